@@ -1,0 +1,22 @@
+"""What a program amounts to: canonical commands, and the motion among them as columns."""
+
+from aircut.canon.commands import COMMANDS, Command
+from aircut.canon.record import CHUNK, Chunk, Event, Recorder, Recording
+from aircut.canon.toolpath import COLUMNS, EXACT_PATH, EXACT_STOP, INVERSE_TIME, ROW, Kind, Toolpath
+
+__all__ = [
+    "CHUNK",
+    "COLUMNS",
+    "COMMANDS",
+    "EXACT_PATH",
+    "EXACT_STOP",
+    "INVERSE_TIME",
+    "ROW",
+    "Chunk",
+    "Command",
+    "Event",
+    "Kind",
+    "Recorder",
+    "Recording",
+    "Toolpath",
+]

@@ -1,0 +1,89 @@
+"""The canonical commands: the machine's own verbs, each a row with the way it is written.
+
+Names and layout are those that LinuxCNC's stand-alone interpreter prints. Motion
+(STRAIGHT_TRAVERSE, STRAIGHT_FEED, ARC_FEED, STRAIGHT_PROBE) lives in the Toolpath;
+all else is an event beside it. Offsets are in mm and degrees here and are
+written in the program's units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+
+class Command(NamedTuple):
+    """One canonical command that is not motion."""
+
+    name: str
+    form: str  # %-template of what stands between the parentheses
+    meaning: str
+    fields: tuple[str, ...] = ()  # names of its values
+    scale: Callable[[tuple[Any, ...], float], tuple[Any, ...]] | None = None  # values, mm per program unit
+
+
+SIX = ("x", "y", "z", "a", "b", "c")
+SIX_FORM = ", ".join(["%.4f"] * 6)
+NINE_FORM = "%.4f %.4f %.4f, %.4f %.4f %.4f, %.4f %.4f %.4f"
+
+
+def lengths(*at: int) -> Callable[[tuple[Any, ...], float], tuple[Any, ...]]:
+    """A scale that divides the values at these places (lengths) by the program's unit."""
+    return lambda values, unit: tuple(v / unit if i in at else v for i, v in enumerate(values))
+
+
+def command(name: str, form: str = "", meaning: str = "", fields: str = "", scale: Any = None) -> Command:
+    return Command(name, form, meaning, tuple(fields.split()), scale)
+
+
+COMMANDS = {
+    row.name: row
+    for row in (
+        command("USE_LENGTH_UNITS", "CANON_UNITS_%s", "lengths that follow are in MM or INCHES", "units"),
+        command("SET_G5X_OFFSET", "%d, " + SIX_FORM, "work coordinate system and its origin",
+                "system x y z a b c", lengths(1, 2, 3)),
+        command("SET_G92_OFFSET", SIX_FORM, "offsets of G92 and G52 together", "x y z a b c", lengths(0, 1, 2)),
+        command("SET_XY_ROTATION", "%.4f", "rotation of the XY plane, degrees", "angle"),
+        command("SET_FEED_REFERENCE", "CANON_%s", "what the feed refers to", "reference"),
+        command("SET_FEED_MODE", "%d, %d", "0: per minute, 1: per revolution", "spindle mode"),
+        command("SET_FEED_RATE", "%.4f", "program units a minute", "feed", lengths(0)),
+        command("SELECT_PLANE", "CANON_PLANE_%s", "plane of arcs: XY, XZ, YZ", "plane"),
+        command("SET_MOTION_CONTROL_MODE", "CANON_%s", "EXACT_PATH or EXACT_STOP", "mode"),
+        command("SET_MOTION_CONTROL_BLEND", "CANON_CONTINUOUS, %f", "continuous path; blend tolerance", "tolerance",
+                lengths(0)),
+        command("SET_NAIVECAM_TOLERANCE", "%.4f", "points nearer than this to their chord may go", "tolerance",
+                lengths(0)),
+        command("DWELL", "%.4f", "seconds", "seconds"),
+        command("SET_SPINDLE_SPEED", "%d, %.4f", "revolutions a minute", "spindle speed"),
+        command("START_SPINDLE_CLOCKWISE", "%d", "", "spindle"),
+        command("START_SPINDLE_COUNTERCLOCKWISE", "%d", "", "spindle"),
+        command("STOP_SPINDLE_TURNING", "%d", "", "spindle"),
+        command("SET_SPINDLE_MODE", "%d %.4f", "0: constant revolutions", "spindle mode"),
+        command("SELECT_TOOL", "%d", "tool that the next change loads", "tool"),
+        command("START_CHANGE"),
+        command("CHANGE_TOOL", "%d", "tool change to this slot or tool", "tool"),
+        command("CHANGE_TOOL_NUMBER", "%d", "declare the loaded tool", "tool"),
+        command("USE_TOOL_LENGTH_OFFSET", NINE_FORM, "tool length compensation", "x y z a b c u v w",
+                lengths(0, 1, 2, 6, 7, 8)),
+        command("MIST_ON"),
+        command("MIST_OFF"),
+        command("FLOOD_ON"),
+        command("FLOOD_OFF"),
+        command("ENABLE_FEED_OVERRIDE"),
+        command("DISABLE_FEED_OVERRIDE"),
+        command("ENABLE_SPEED_OVERRIDE", "%d", "", "spindle"),
+        command("DISABLE_SPEED_OVERRIDE", "%d", "", "spindle"),
+        command("PROGRAM_STOP", "", "wait for the operator"),
+        command("OPTIONAL_PROGRAM_STOP", "", "wait for the operator if optional stop is on"),
+        command("PROGRAM_RESTART", "", "start over from the first line (M47)"),
+        command("PALLET_SHUTTLE"),
+        command("PROGRAM_END"),
+        command("FINISH"),
+        command("ON_RESET"),
+        command("COMMENT", '"%s"', "a comment of the program or of the interpreter", "text"),
+        command("MESSAGE", '"%s"', "a message to the operator", "text"),
+    )
+}
+
+#: Written under another name than their own, because two forms share one verb.
+WRITTEN = {"SET_MOTION_CONTROL_BLEND": "SET_MOTION_CONTROL_MODE"}
