@@ -1,0 +1,209 @@
+"""The Python API: load a program, check it, run it, look at what it does.
+
+    program = aircut.load("part.ngc")
+    for diagnostic in program.check():
+        print(diagnostic)
+    result = program.run()
+    print(result.extents, len(result.toolpath))
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from aircut import dialects
+from aircut.canon import COMMANDS, Chunk, Kind, Recording, Toolpath
+from aircut.canon.record import Events
+from aircut.canon.toolpath import Extents
+from aircut.diagnostics import Diagnostic, Severity
+from aircut.interpreter.interpreter import Interpreter, Limits, Settings
+from aircut.machine import Machine, built_in
+from aircut.source import Source
+
+__all__ = ["CanonicalCommand", "Limits", "Program", "Result", "load", "loads"]
+
+MOVES_KEPT = 20_000_000  # moves that a Result holds at most, unless told otherwise
+
+
+class CanonicalCommand(NamedTuple):
+    """One canonical command.
+
+    values: of motion, the row of the toolpath by column name (machine coordinates,
+    mm and degrees); of all others, the values named in aircut.canon.COMMANDS.
+    """
+
+    name: str
+    values: dict[str, Any]
+    line: int  # from 1; 0 before the program starts
+    file: str
+
+
+class Message(NamedTuple):
+    """A message to the operator."""
+
+    text: str
+    line: int
+    file: str
+
+
+class Result:
+    """What a run did.
+
+    toolpath: the motion, as columns.    events: all else, in order.
+    diagnostics: what went wrong.    variables: numbered variables that have a value,
+    and named ones.    state: the modes and positions at the end.
+    """
+
+    def __init__(self, recording: Recording, interpreter: Interpreter) -> None:
+        self.recording = recording
+        self.files = list(interpreter.files)
+        self.diagnostics: list[Diagnostic] = list(interpreter.diagnostics)
+        self.sources: dict[str, Source] = {name: interpreter.units[name].source for name in self.files}
+        self._interpreter = interpreter
+
+    def __repr__(self) -> str:
+        return f"<Result: {self.recording.moves} moves, {len(self.diagnostics)} diagnostics>"
+
+    @property
+    def ok(self) -> bool:
+        """Whether there was no error."""
+        return not any(d.severity is Severity.ERROR for d in self.diagnostics)
+
+    @property
+    def toolpath(self) -> Toolpath:
+        """The motion, as columns."""
+        return self.recording.toolpath
+
+    @property
+    def events(self) -> Events:
+        """The commands that are not motion."""
+        return self.recording.events
+
+    @property
+    def messages(self) -> list[Message]:
+        """What the operator was told."""
+        return [Message(e.values[0], e.line, self.files[e.file]) for e in self.events if e.name == "MESSAGE"]
+
+    @property
+    def extents(self) -> Extents | None:
+        """Box of all motion, machine coordinates, mm and degrees; None without motion."""
+        return self.toolpath.extents()
+
+    @property
+    def variables(self) -> dict[int | str, float]:
+        """Numbered (in mm, degrees) and named variables that are not null at the end."""
+        m = self._interpreter.state
+        known: dict[int | str, float] = {}
+        for number, value in enumerate(m.locals):
+            if value is not None:
+                known[number] = value
+        for number, value in enumerate(m.numbered):
+            if value is not None:
+                known[number] = value
+        for names in (m.names, m.scope):
+            known.update({name: value for name, value in names.items() if value is not None})
+        return known
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """Modes in force at the end, by group, and the positions: mm, degrees, mm/min, rpm."""
+        m = self._interpreter.state
+        return {
+            "modes": {(group.name or "").lower(): row.name for group, row in m.modal.items()},
+            "position": dict(zip("xyzabc", m.position, strict=True)),
+            "machine": dict(zip("xyzabc", m.machine_position(), strict=True)),
+            "feed": m.feed,
+            "speed": m.speed,
+            "spindle": {3: "clockwise", 4: "counterclockwise"}.get(m.spindle, "off"),
+            "mist": m.mist,
+            "flood": m.flood,
+            "tool": m.tool,
+        }
+
+    def system(self, number: int) -> float | None:
+        """A numbered variable as the program would read it at the end."""
+        return self._interpreter.state.read(float(number))
+
+    def commands(self) -> Iterator[CanonicalCommand]:
+        """All canonical commands in order."""
+        names = {Kind.TRAVERSE: "STRAIGHT_TRAVERSE", Kind.FEED: "STRAIGHT_FEED", Kind.ARC: "ARC_FEED",
+                 Kind.PROBE: "STRAIGHT_PROBE"}  # fmt: skip
+        rows = self.toolpath.to_numpy()
+        at = 0
+        for event in self.events:
+            while at < event.at:
+                yield self._motion(names, rows[at])
+                at += 1
+            values = dict(zip(COMMANDS[event.name].fields, event.values, strict=True))
+            yield CanonicalCommand(event.name, values, event.line, self.files[event.file])
+        for row in rows[at:]:
+            yield self._motion(names, row)
+
+    __iter__ = commands
+
+    def _motion(self, names: dict[Kind, str], row: Any) -> CanonicalCommand:
+        values = dict(zip(row.dtype.names, row.tolist(), strict=True))
+        return CanonicalCommand(names[Kind(values["kind"])], values, values["line"], self.files[values["file"]])
+
+    def canon(self) -> Iterator[str]:
+        """The canonical listing, line by line."""
+        from aircut.export.listing import Listing
+
+        listing = Listing(raw_lines(self.sources, self.files))
+        return listing.write(Chunk(0, self.toolpath.to_numpy().tobytes(), self.events))
+
+
+def raw_lines(sources: dict[str, Source], files: list[str]) -> Any:
+    """(file index, line from 1) -> bytes of that line."""
+    return lambda file, line: sources[files[file]].raw(line - 1)
+
+
+class Program:
+    """A program, ready to be checked or run any number of times."""
+
+    def __init__(self, source: Source, dialect: str = "rosetta") -> None:
+        """Raises ValueError for an unknown dialect."""
+        self.source = source
+        self.dialect = dialects.load(dialect)
+
+    def __repr__(self) -> str:
+        return f"<Program {self.source.name!r}: {len(self.source)} lines, {self.dialect.name}>"
+
+    def interpreter(self, machine: Machine | None = None, **settings: Any) -> Interpreter:
+        """An Interpreter of this program; settings as in interpreter.Settings."""
+        return Interpreter(self.source, self.dialect, machine or built_in(), Settings(**settings))
+
+    def check(self, machine: Machine | None = None, **settings: Any) -> list[Diagnostic]:
+        """All diagnostics, going on after errors; no motion is kept."""
+        interpreter = self.interpreter(machine, keep_going=True, **settings)
+        for _ in interpreter.run():
+            pass
+        return interpreter.diagnostics
+
+    def run(self, machine: Machine | None = None, **settings: Any) -> Result:
+        """Run to the end, or to the first error."""
+        limits = settings.setdefault("limits", Limits())
+        if limits.moves is None:
+            settings["limits"] = limits._replace(moves=MOVES_KEPT)
+        interpreter = self.interpreter(machine, **settings)
+        recording = Recording()
+        for chunk in interpreter.run():
+            recording.add(chunk)
+        recording.files = interpreter.files
+        return Result(recording, interpreter)
+
+    def stream(self, machine: Machine | None = None, **settings: Any) -> Iterator[Chunk]:
+        """Run, yielding the motion in chunks as it comes."""
+        return self.interpreter(machine, **settings).run()
+
+
+def load(path: str | Path, dialect: str = "rosetta") -> Program:
+    """A program from a file. Raises OSError, and ValueError for an unknown dialect."""
+    return Program(Source.load(Path(path)), dialect)
+
+
+def loads(text: str | bytes, dialect: str = "rosetta", name: str = "<text>") -> Program:
+    """A program from text. Raises ValueError for an unknown dialect."""
+    return Program(Source(name, text.encode() if isinstance(text, str) else text), dialect)

@@ -1,0 +1,151 @@
+"""What the commands share: the machine from the options, the program, progress, diagnostics on a terminal."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, Any
+
+import click
+
+from aircut import dialects
+from aircut.diagnostics import Diagnostic, Severity, Span
+from aircut.diagnostics import faults as F
+from aircut.interpreter.interpreter import Interpreter, Limits, Settings
+from aircut.machine import Machine, MachineError, built_in, config, load, memory
+from aircut.source import Source
+
+PATIENCE = 1.0  # seconds of work before progress is shown
+COLORS = {Severity.ERROR: "red", Severity.WARNING: "yellow"}
+
+
+def machine(options: dict[str, Any]) -> Machine:
+    """The machine that the options describe. Raises click.UsageError."""
+    try:
+        if options["folder"]:
+            if options["axes"]:
+                raise click.UsageError("--axes is for the built-in machine; a folder's machine.toml names its own")
+            made = load(options["folder"])
+        else:
+            made = built_in(options["axes"] or "XYZ")
+        made.macros = (*options["macros"], *made.macros)
+        if options["tools"]:
+            made.tools = config.load_tools(options["tools"])
+            made.own_tools = True
+        if options["parameters"]:
+            known = (*memory.PERSISTENT, *memory.GIVEN)
+            made.variables |= memory.read_parameters(options["parameters"], known)
+    except MachineError as error:
+        raise click.UsageError(str(error)) from None
+    return made
+
+
+def settings(options: dict[str, Any], keep_going: bool, keeps_moves: bool) -> Settings:
+    """How to run."""
+    moves = options["max_moves"]
+    if moves is None and keeps_moves:
+        from aircut.api import MOVES_KEPT
+
+        moves = MOVES_KEPT
+    limits = Limits(blocks=options["max_blocks"], moves=moves)
+    return Settings(options["block_delete"], options["optional_stop"], keep_going, limits=limits)
+
+
+def interpreter(
+    file: Path, options: dict[str, Any], made: Machine, keep_going: bool, keeps_moves: bool
+) -> Interpreter | Diagnostic:
+    """An interpreter of the file, or why there is none. Raises click.UsageError for an unknown dialect."""
+    try:
+        dialect = dialects.load(options["dialect"])
+    except ValueError as error:
+        raise click.UsageError(str(error)) from None
+    try:
+        source = Source.load(file)
+    except OSError as error:
+        return F.CANNOT_READ.at(str(file), Span(), reason=error.strerror or str(error))
+    return Interpreter(source, dialect, made, settings(options, keep_going, keeps_moves))
+
+
+def remember(options: dict[str, Any], made: Machine, finished: Interpreter) -> None:
+    """Write back what outlives the run, where there is a place for it. Raises click.ClickException."""
+    from aircut.interpreter.starting import remembered
+
+    if not (options["parameters"] or made.folder):
+        return
+    kept = remembered(finished.state)
+    try:
+        if options["parameters"]:
+            memory.write_parameters(options["parameters"], kept)
+        elif made.folder:
+            memory.remember(made.folder, kept)
+    except (OSError, MachineError) as error:
+        raise click.ClickException(f"cannot store the machine's variables: {error}") from None
+
+
+@contextmanager
+def progress(what: str) -> Iterator[Callable[[int, int], None]]:
+    """A progress bar on the terminal for work that takes longer than PATIENCE: call it with (done, all)."""
+    start = time.monotonic()
+    bar: Any = None
+    task: Any = None
+
+    def advance(done: int, total: int) -> None:
+        nonlocal bar, task
+        if bar is None:
+            if time.monotonic() - start < PATIENCE or not sys.stderr.isatty():
+                return
+            from rich.console import Console
+            from rich.progress import Progress
+
+            bar = Progress(console=Console(stderr=True), transient=True)
+            task = bar.add_task(what, total=total)
+            bar.start()
+        bar.update(task, completed=min(done, total), total=total)
+
+    try:
+        yield advance
+    finally:
+        if bar is not None:
+            bar.stop()
+
+
+def show(diagnostics: Sequence[Diagnostic], source_line: Callable[[str, int], str], file: IO[str]) -> None:
+    """Write diagnostics for people; on a terminal with color, and the line with the place marked under it."""
+    terminal = file.isatty()
+    for d in diagnostics:
+        place = f"{d.file}:{d.span.line}:{max(d.span.column, 1)}" if d.span.line else d.file
+        severity = d.severity.value
+        if terminal:
+            severity = click.style(severity, fg=COLORS[d.severity], bold=True)
+        print(f"{place}: {severity} {d.code}: {d.message}", file=file)
+        if not terminal:
+            continue
+        if d.span.line:
+            text = source_line(d.file, d.span.line)
+            start = max(d.span.column - 1, 0)
+            width = max(min(d.span.end - 1, len(text)) - start, 1)
+            gutter = f"{d.span.line:>5} | "
+            shown = "".join(c if c.isprintable() or c == "\t" else "\N{REPLACEMENT CHARACTER}" for c in text)[:400]
+            blank = "".join("\t" if c == "\t" else " " for c in shown[:start])
+            mark = click.style("^" * min(width, 400), fg=COLORS[d.severity], bold=True)
+            print(gutter + shown, file=file)
+            print(" " * 5 + " | " + blank + mark, file=file)
+        for frame in reversed(d.stack):
+            print(f"        in {frame.name}, called from {frame.file}:{frame.line}", file=file)
+        if d.hint:
+            print(f"        = {d.hint}", file=file)
+
+
+def totals(diagnostics: Sequence[Diagnostic]) -> str:
+    """“2 errors, 1 warning”."""
+    counts = [(sum(d.severity is s for d in diagnostics), s.value) for s in Severity]
+    return ", ".join(f"{n} {word}{'s' * (n != 1)}" for n, word in counts if n)
+
+
+def lines_of(*interpreters: Interpreter) -> Callable[[str, int], str]:
+    """Text of a line of a program, by file name and number from 1."""
+    sources = {name: unit.source for i in interpreters for name, unit in i.units.items()}
+    return lambda file, line: sources[file].text(line - 1) if file in sources else ""

@@ -1,0 +1,105 @@
+"""`aircut`: run, check, plot.
+
+Exit status: 0 fine, 1 the program has an error, 2 wrong usage, 130 interrupted.
+Heavy imports wait until they are needed.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from aircut import __version__
+
+FORMATS = ("summary", "canon", "json")
+CHECK_FORMATS = ("text", "json", "sarif", "github")
+PICTURES = (".png", ".svg", ".html")
+
+FILE = click.Path(path_type=Path)
+FOLDER = click.Path(path_type=Path, file_okay=False, exists=True)
+
+
+def machine_options(command: Any) -> Any:
+    """Options that all commands share: the language and the machine."""
+    for option in (
+        click.option("--max-moves", type=click.IntRange(1), default=None, help="Stop after this many moves."),
+        click.option("--max-blocks", type=click.IntRange(0), default=100_000_000, show_default=True,
+                     help="Stop after this many blocks run again by loops, GOTO and calls."),
+        click.option("--optional-stop", is_flag=True, help="M1 waits for the operator."),
+        click.option("--block-delete/--no-block-delete", default=False, help="Skip lines that begin with /."),
+        click.option("--parameters", type=FILE, metavar="FILE.var",
+                     help="Variables to start from; rewritten after a run."),
+        click.option("--tools", type=click.Path(path_type=Path, dir_okay=False, exists=True), metavar="FILE",
+                     help="Tool library (tools.toml)."),
+        click.option("--macros", type=FOLDER, multiple=True, metavar="DIR", help="Folder of macro files; repeatable."),
+        click.option("--axes", default=None, metavar="LETTERS", help="Axes of the built-in machine, as XYZA."),
+        click.option("--machine", "folder", type=FOLDER, metavar="DIR", help="The machine's folder."),
+        click.option("--dialect", type=click.Choice(["rosetta", "linuxcnc"]), default="rosetta", show_default=True),
+    ):  # fmt: skip
+        command = option(command)
+    return command
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="aircut")
+def cli() -> None:
+    """A virtual CNC: find out what an NC program really does before metal is at risk."""
+
+
+@cli.command()
+@click.argument("file", type=FILE)
+@machine_options
+@click.option("--format", "style", type=click.Choice(FORMATS), default="summary", show_default=True)
+@click.option("-o", "--output", type=FILE, help="Write here instead of to the terminal.")
+def run(file: Path, style: str, output: Path | None, **options: Any) -> None:
+    """Run a program on the virtual machine and tell what it does."""
+    from aircut.cli import running
+
+    sys.exit(running.run(file, style, output, options))
+
+
+@cli.command()
+@click.argument("files", type=FILE, nargs=-1, required=True)
+@machine_options
+@click.option("--format", "style", type=click.Choice(CHECK_FORMATS), default="text", show_default=True)
+@click.option("-o", "--output", type=FILE, help="Write here instead of to the terminal.")
+def check(files: tuple[Path, ...], style: str, output: Path | None, **options: Any) -> None:
+    """Find all faults of programs, without keeping any motion."""
+    from aircut.cli import checking
+
+    sys.exit(checking.check(files, style, output, options))
+
+
+@cli.command()
+@click.argument("file", type=FILE)
+@machine_options
+@click.option("-o", "--output", type=FILE, required=True, metavar="OUT.png|.svg|.html", help="The picture.")
+def plot(file: Path, output: Path, **options: Any) -> None:
+    """Draw the toolpath: a still picture, or a page with a 3D view."""
+    if output.suffix.lower() not in PICTURES:
+        raise click.UsageError(f"cannot draw {output.suffix or output}: give a file ending in {', '.join(PICTURES)}")
+    from aircut.cli import plotting
+
+    sys.exit(plotting.plot(file, output, options))
+
+
+def main() -> None:
+    """Entry point."""
+    try:
+        cli(standalone_mode=False)
+    except click.UsageError as error:
+        error.show()
+        sys.exit(2)
+    except click.ClickException as error:
+        error.show()
+        sys.exit(error.exit_code)
+    except (click.Abort, KeyboardInterrupt):
+        click.echo("interrupted", err=True)
+        sys.exit(130)
+    except BrokenPipeError:
+        # The reader of our output has gone: that is its affair, not an error.
+        sys.stderr.close()
+        sys.exit(0)

@@ -1,0 +1,68 @@
+"""The summary of a run, as a table."""
+
+from __future__ import annotations
+
+from typing import IO, TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from aircut.cli.common import totals
+from aircut.export.report import figures
+
+if TYPE_CHECKING:
+    from aircut.api import Result
+
+
+def summary(result: Result, out: IO[str]) -> None:
+    """Write the summary."""
+    console = Console(file=out, highlight=False, soft_wrap=not out.isatty(), width=None if out.isatty() else 100)
+    numbers = figures(result)
+    console.print(extents(numbers["extents"]))
+    rest = Table(show_header=False, box=None, pad_edge=False)
+    rest.add_column(style="bold")
+    rest.add_column(overflow="fold")
+    for title, text in lines(result, numbers):
+        rest.add_row(title, escape(text))
+    console.print(rest)
+
+
+def extents(boxes: dict[str, Any]) -> Table:
+    """Lowest and highest position on each axis, rapid and feed apart."""
+    table = Table(title="Extents, machine coordinates", title_justify="left")
+    table.add_column("axis")
+    for kind in ("rapid", "feed"):
+        table.add_column(f"{kind} from", justify="right")
+        table.add_column("to", justify="right")
+    rapid, feed = boxes["rapid"] or {}, boxes["feed"] or {}
+    for axis in "xyzabc":
+        if axis in rapid or axis in feed:
+            unit = "mm" if axis in "xyz" else "°"
+            cells = [f"{value:.3f}" for box in (rapid, feed) for value in box.get(axis, ())]
+            if axis not in rapid:
+                cells = ["", "", *cells]
+            table.add_row(f"{axis.upper()} {unit}", *cells)
+    return table
+
+
+def lines(result: Result, numbers: dict[str, Any]) -> list[tuple[str, str]]:
+    """The other figures: title and text."""
+    counts = numbers["counts"]
+    length, rotation = numbers["length"], numbers["rotation"]
+    rows = [
+        ("path", f"{length['rapid']:.3f} mm rapid, {length['feed']:.3f} mm feed"),
+        (
+            "moves",
+            f"{counts['moves']:,}: {counts['rapids']:,} rapid, {counts['feeds']:,} straight feed, {counts['arcs']:,} arc",
+        ),
+        ("tools", ", ".join(f"T{tool}" for tool in numbers["tools"]) or "none"),
+        ("lines", f"{counts['lines']:,}"),
+    ]
+    if rotation["rapid"] or rotation["feed"]:
+        rows.insert(1, ("rotation", f"{rotation['rapid']:.3f}° rapid, {rotation['feed']:.3f}° feed"))
+    if numbers["dwell_seconds"]:
+        rows.append(("dwell", f"{numbers['dwell_seconds']:g} s"))
+    rows += [("message", message.text) for message in result.messages]
+    rows.append(("faults", totals(result.diagnostics) or "none"))
+    return rows

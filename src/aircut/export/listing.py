@@ -1,0 +1,101 @@
+"""The canonical listing: one canonical command a line, as LinuxCNC's stand-alone interpreter prints.
+
+Positions are in the program's units and relative to the offsets in force, which
+are themselves commands of the listing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+
+from aircut.canon import COMMANDS, ROW, Chunk, Event, Kind
+from aircut.canon.commands import WRITTEN
+from aircut.geometry.arcs import PLANE_AXES
+
+INCH = 25.4  # mm
+NO_NUMBER = "N..... "
+LABEL = re.compile(rb"^[ \t/]*[nN][ \t]*(\d+)")
+STRAIGHT = {
+    Kind.TRAVERSE: "STRAIGHT_TRAVERSE",
+    Kind.FEED: "STRAIGHT_FEED",
+    Kind.PROBE: "STRAIGHT_PROBE",
+}
+SIX = "(%.4f, %.4f, %.4f, %.4f, %.4f, %.4f)"
+ARC = "ARC_FEED(%.4f, %.4f, %.4f, %.4f, %d, %.4f, %.4f, %.4f, %.4f)"
+
+
+def label(raw: bytes) -> str:
+    """The N column of a line of text."""
+    match = LABEL.match(raw)
+    return ("N" + match[1].decode().ljust(6)) if match else NO_NUMBER
+
+
+class Listing:
+    """Writes chunks of a run as text. raw: (file index, line from 1) -> bytes of that line."""
+
+    def __init__(self, raw: Callable[[int, int], bytes]) -> None:
+        self.raw = raw
+        self.count = 0
+        self.unit = 1.0  # mm a program unit
+        self.work = [0.0] * 6
+        self.shift = [0.0] * 6
+        self.labels: dict[tuple[int, int], str] = {}
+        self.track: Mapping[str, Callable[[Event], None]] = {
+            "USE_LENGTH_UNITS": self.set_units,
+            "SET_G5X_OFFSET": self.set_work,
+            "SET_G92_OFFSET": self.set_shift,
+        }
+
+    def set_units(self, event: Event) -> None:
+        self.unit = INCH if event.values[0] == "INCHES" else 1.0
+
+    def set_work(self, event: Event) -> None:
+        self.work = list(event.values[1:])
+
+    def set_shift(self, event: Event) -> None:
+        self.shift = list(event.values)
+
+    def write(self, chunk: Chunk) -> Iterator[str]:
+        """The lines of a chunk, each with its line end."""
+        events = iter(chunk.events)
+        event = next(events, None)
+        for at, row in enumerate(ROW.iter_unpack(chunk.rows), chunk.first):
+            while event is not None and event.at <= at:
+                yield self.event(event)
+                event = next(events, None)
+            yield self.move(row)
+        while event is not None:
+            yield self.event(event)
+            event = next(events, None)
+
+    def line(self, file: int, line: int, text: str) -> str:
+        self.count += 1
+        known = self.labels.get((file, line))
+        if known is None:
+            known = label(self.raw(file, line)) if line else NO_NUMBER
+            if len(self.labels) < 100_000:
+                self.labels[file, line] = known
+        return "%5d %s%s\n" % (self.count, known, text)
+
+    def event(self, event: Event) -> str:
+        track = self.track.get(event.name)
+        if track is not None:
+            track(event)
+        row = COMMANDS[event.name]
+        values = row.scale(event.values, self.unit) if row.scale else event.values
+        text = f"{WRITTEN.get(event.name, event.name)}({row.form % values})"
+        return self.line(event.file, event.line, text)
+
+    def move(self, row: tuple[float, ...]) -> str:
+        unit = self.unit
+        offset = [w + s for w, s in zip(self.work, self.shift, strict=True)]
+        place = [(row[i] - offset[i]) / unit for i in range(3)] + [row[i] - offset[i] for i in (3, 4, 5)]
+        kind, plane = int(row[13]), int(row[14])
+        if kind == Kind.ARC:
+            u, v, w = PLANE_AXES[plane]
+            center = ((row[6] - offset[u]) / unit, (row[7] - offset[v]) / unit)
+            text = ARC % (place[u], place[v], *center, row[11], place[w], *place[3:])
+        else:
+            text = STRAIGHT[Kind(kind)] + SIX % tuple(place)
+        return self.line(int(row[12]), int(row[9]), text)

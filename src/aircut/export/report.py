@@ -1,0 +1,86 @@
+"""What a run comes to: the figures of the summary, and the JSON report.
+
+Lengths mm, angles degrees. The JSON report's fields are stable within its version.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from aircut.canon import Kind
+from aircut.canon.toolpath import AXES, Extents
+from aircut.export.diagnostics import as_dict
+
+if TYPE_CHECKING:
+    from aircut.api import Result
+
+JSON_VERSION = 1
+
+
+def box(extents: Extents | None) -> dict[str, list[float]] | None:
+    """Extents by axis, [low, high]; axes that stay at zero are left out, X, Y and Z never."""
+    if extents is None:
+        return None
+    pairs = zip(AXES, extents.low, extents.high, strict=True)
+    return {axis: [low, high] for axis, low, high in pairs if axis in "xyz" or low or high}
+
+
+def figures(result: Result) -> dict[str, Any]:
+    """The numbers of a run."""
+    toolpath = result.toolpath
+    lengths = toolpath.lengths()
+    rapid = toolpath.kind == Kind.TRAVERSE
+    linear = moves_linear(result)
+    changes = [event.values[0] for event in result.events if event.name in ("CHANGE_TOOL", "CHANGE_TOOL_NUMBER")]
+    seconds = sum(event.values[0] for event in result.events if event.name == "DWELL")
+    return {
+        "extents": {
+            "rapid": box(toolpath.extents(True)),
+            "feed": box(toolpath.extents(False)),
+            "all": box(toolpath.extents()),
+        },
+        "length": {
+            "rapid": float(lengths[rapid & linear].sum()),
+            "feed": float(lengths[~rapid & linear].sum()),
+        },
+        "rotation": {
+            "rapid": float(lengths[rapid & ~linear].sum()),
+            "feed": float(lengths[~rapid & ~linear].sum()),
+        },
+        "tools": list(dict.fromkeys(changes)),
+        "counts": {
+            "lines": len(next(iter(result.sources.values()))),
+            "moves": len(toolpath),
+            "rapids": int(rapid.sum()),
+            "feeds": int((toolpath.kind == Kind.FEED).sum()),
+            "arcs": int((toolpath.kind == Kind.ARC).sum()),
+            "tool_changes": len(changes),
+        },
+        "dwell_seconds": seconds,
+    }
+
+
+def moves_linear(result: Result) -> Any:
+    """Which moves move X, Y or Z: their lengths are mm, the others' degrees."""
+    import numpy as np
+
+    toolpath = result.toolpath
+    step = toolpath.ends()[:, :3] - toolpath.starts()[:, :3]
+    return (np.abs(step) > 1e-7).any(axis=1) | (toolpath.kind == Kind.ARC)
+
+
+def to_json(result: Result, program: str, dialect: str) -> str:
+    """The JSON report of a run."""
+    report = {
+        "version": JSON_VERSION,
+        "program": program,
+        "dialect": dialect,
+        "ok": result.ok,
+        "units": {"length": "mm", "angle": "degrees", "feed": "mm/min"},
+        **figures(result),
+        "messages": [{"text": m.text, "file": m.file, "line": m.line} for m in result.messages],
+        "diagnostics": [as_dict(d) for d in result.diagnostics],
+        "state": result.state,
+    }
+    return json.dumps(report, indent=2) + "\n"

@@ -1,0 +1,1 @@
+"""A program against a machine, giving canonical commands."""

@@ -1,0 +1,573 @@
+"""The interpreter: runs a program block by block, in the dialect's order of execution."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any, NamedTuple, NoReturn
+
+from aircut.canon import CHUNK, ROW, Chunk
+from aircut.diagnostics import Diagnostic, Fault, Frame, Refusal, Severity, Span
+from aircut.diagnostics import faults as F
+from aircut.interpreter import macros, starting
+from aircut.interpreter.arranging import Steps, arrange, code_name, find
+from aircut.interpreter.auxiliary import End, Restart
+from aircut.interpreter.calls import ARGUMENTS, Call, Return
+from aircut.interpreter.compiling import FAILURES, explain
+from aircut.interpreter.state import State
+from aircut.interpreter.table import Code, Dialect, Group
+from aircut.interpreter.unit import Branch, Shape, Statement, Unit
+from aircut.kernels import scan
+from aircut.language.blocks import Block, parse
+from aircut.language.expressions import Number
+from aircut.language.structure import Routine
+from aircut.machine import Machine
+from aircut.source import Source
+
+FULL = CHUNK * ROW.size
+PLAIN, BLANK = scan.PLAIN, scan.BLANK
+DEEPEST_CALL = 100
+WATCH = 64  # passes through a loop that are compared with one before
+EVALUATION = (*FAILURES, Refusal)
+FATAL = (F.BLOCK_BUDGET, F.ENDLESS_LOOP)
+SHAPE_WORD = re.compile(rb"([a-z])([\d.]*)")
+
+
+class Limits(NamedTuple):
+    """What stops runaway programs; all can be raised."""
+
+    blocks: int = 100_000_000  # run again by loops, GOTO, calls, M47
+    moves: int | None = None  # None: no limit; set where they are all kept
+    line: int = 1 << 20  # characters
+    diagnostics: int = 1000
+
+
+class Settings(NamedTuple):
+    """How to run."""
+
+    block_delete: bool = False
+    optional_stop: bool = False
+    keep_going: bool = False  # after an error, go on with the next block
+    restarts: int = 1  # runs that M47 asks for
+    limits: Limits = Limits()
+
+
+class Level(NamedTuple):
+    """A caller, waiting for its call to come back."""
+
+    unit: Unit
+    routine: Routine
+    back: int  # line to go on with
+    line: int  # line of the call, from 1
+    call: Call
+    left: int  # repetitions still to do
+    locals: list[float | None]
+    scope: dict[str, float | None]
+
+
+class Stopped(Exception):
+    """The run cannot go on."""
+
+
+class Interpreter:
+    """Runs one program on one machine. Iterate `run()`; then read `state` and `diagnostics`."""
+
+    def __init__(self, source: Source, dialect: Dialect, machine: Machine, settings: Settings = Settings()) -> None:
+        self.settings = settings
+        self.dialect = dialect
+        self.machine = machine
+        self.diagnostics: list[Diagnostic] = []
+        self._told: set[tuple[Any, ...]] = set()
+        self.state = State(dialect, machine, self.warn)
+        self.unit = Unit(source, dialect, settings.block_delete, settings.limits.line)
+        self.files = [source.name]
+        self.units = {source.name: self.unit}
+        self.stack: list[Level] = []
+        self.plans: dict[bytes, Shape] = {}
+        self.routine = self.unit.structure.main
+        self.repeated = 0
+        self.passes = 0
+        self.watched: tuple[int, int, tuple[Any, ...]] | None = None
+        self.line = 0  # being run, from 0
+        self.ended: End | None = None
+
+    # --- diagnostics
+
+    def stack_frames(self) -> tuple[Frame, ...]:
+        return tuple(Frame(level.call.name, level.unit.source.name, level.line) for level in self.stack)
+
+    def tell(self, diagnostic: Diagnostic) -> None:
+        key = (diagnostic.code, diagnostic.file, diagnostic.span)
+        if key not in self._told and len(self.diagnostics) < self.settings.limits.diagnostics:
+            self._told.add(key)
+            self.diagnostics.append(diagnostic)
+
+    def warn(self, fault: Fault, letter: str = "", **values: Any) -> None:
+        """A warning of the block being run."""
+        self.tell_refusal(Refusal(fault, letter, **values), self.unit, self.line)
+
+    def tell_refusal(self, refusal: Refusal, unit: Unit, line: int, stack: bool = True) -> None:
+        frames = self.stack_frames() if stack else ()
+        span = unit.place(line, refusal) if line < len(unit.source) else Span()
+        self.tell(refusal.fault.at(unit.source.name, span, frames, **refusal.values))
+
+    @property
+    def failed(self) -> bool:
+        return any(d.severity is Severity.ERROR for d in self.diagnostics)
+
+    # --- the run
+
+    def run(self) -> Iterator[Chunk]:
+        """Run the program; yields its motion and events as they come."""
+        m = self.state
+        starting.begin(m)
+        self.check_structure(self.unit)
+        if not len(self.unit.source) or not any(self.unit.source.classes):
+            self.tell(F.EMPTY_PROGRAM.at(self.unit.source.name, Span()))
+        elif self.settings.keep_going or not self.failed:
+            try:
+                yield from self.blocks()
+            except Stopped:
+                pass
+            self.check_rest()
+        m.out.event("ON_RESET")
+        m.out.event("ON_RESET")
+        yield m.out.take()
+
+    def check_structure(self, unit: Unit) -> None:
+        for line, refusal in unit.structure.faults:
+            self.tell_refusal(refusal, unit, line, stack=False)
+
+    def check_rest(self) -> None:
+        """Lines that did not run are still read, so that one run shows all faults of form."""
+        for unit in self.units.values():
+            line = unit.seen.find(0)
+            while line >= 0:
+                if unit.source.classes[line] != BLANK and self.in_program(unit, line):
+                    self.check_line(unit, line)
+                line = unit.seen.find(0, line + 1)
+            for line, refusal in unit.encoding:
+                self.tell_refusal(refusal, unit, line, stack=False)
+        self.diagnostics.sort(key=lambda d: (d.file != self.files[0], d.file, d.span.line))
+
+    def in_program(self, unit: Unit, line: int) -> bool:
+        order = unit.structure.order
+        return order[0].first <= line < order[-1].end
+
+    def check_line(self, unit: Unit, line: int) -> None:
+        """Tell what is wrong with the form of a line: its text, its codes, its words."""
+        try:
+            if unit.source.classes[line] == PLAIN:
+                shape = self.plan(unit.source.words(line)[0])
+                codes, letters = shape.codes, shape.letters
+            else:
+                statement, _ = unit.statement(line)
+                if not isinstance(statement, Statement) or statement.moving:
+                    return
+                codes, letters = statement.codes, statement.letters
+            motion = self.dialect.codes["g1"]
+            rows = [find(name, self.dialect, name[0]) for name in codes]
+            arrange(rows, letters, motion, self.dialect, self.state.axes + "xyzabc")
+        except Refusal as refusal:
+            if refusal.fault not in (F.UNUSED_WORD, F.NOT_SUPPORTED_YET):  # these depend on the modes in force
+                self.tell_refusal(refusal, unit, line, stack=False)
+
+    def blocks(self) -> Iterator[Chunk]:
+        """The main loop: each turn of the outer one enters a routine, each of the inner one runs a line."""
+        m = self.state
+        out = m.out
+        plans = self.plans
+        line = self.routine.first
+        while True:
+            unit, end = self.unit, self.routine.end
+            classes, seen, cache = unit.source.classes, unit.seen, unit.plain
+            here = True
+            while here:
+                if line >= end:
+                    line = self.run_off()
+                    break
+                kind = classes[line]
+                seen[line] = 1
+                if kind == BLANK:
+                    line += 1
+                    continue
+                self.line = line
+                m.line = out.line = line + 1
+                try:
+                    if kind == PLAIN:
+                        known = cache.get(line)
+                        if known is None:
+                            words, values = unit.words(line)
+                            shape = plans.get(words) or self.plan(words)
+                            if self.repeated:
+                                cache[line] = (shape, values)
+                        else:
+                            shape, values = known
+                        steps = shape.steps.get(m.motion) or self.arranged(shape.codes, shape.letters, shape.steps)
+                        w = dict(zip(shape.letters, values))  # noqa: B905  one value a letter by construction
+                        for row in steps.codes:
+                            if row.modal:
+                                self.set_mode(row)
+                            row.run(m, w)
+                        line += 1
+                    else:
+                        line = self.step(unit, line)
+                    if m.transfer is not None:
+                        line = self.follow(line)
+                        here = False
+                except Refusal as refusal:
+                    self.tell_refusal(refusal, self.unit, self.line)
+                    if not self.settings.keep_going or refusal.fault in FATAL:
+                        raise Stopped from None
+                    self.recover(refusal)
+                    line = self.line + 1
+                    here = unit is self.unit
+                if len(out.rows) >= FULL:
+                    self.check_moves()
+                    yield out.take()
+
+    def recover(self, refusal: Refusal) -> None:
+        """Make ready for the block after one at fault."""
+        m = self.state
+        m.transfer = None
+        m.exact_stop = m.machine_frame = False
+        if refusal.fault is F.NOT_SUPPORTED_YET:  # what follows in that mode cannot be run either
+            row = self.dialect.codes.get(refusal.values["code"].lower())
+            if row is not None and row.modal:
+                self.set_mode(row)
+
+    def check_moves(self) -> None:
+        limit = self.settings.limits.moves
+        if limit is not None and self.state.out.moves > limit:
+            self.warn(F.OUTPUT_LIMIT, limit=limit)
+            raise Stopped
+
+    def set_mode(self, row: Code) -> None:
+        self.state.modal[row.group] = row
+        if row.group is Group.MOTION:
+            self.state.motion = row
+
+    # --- blocks
+
+    def plan(self, words: bytes) -> Shape:
+        """What plain lines of this shape (see kernels.scan) mean."""
+        codes: list[str] = []
+        letters: list[str] = []
+        for match in SHAPE_WORD.finditer(words):
+            letter = match[1].decode()
+            if match[2]:
+                codes.append(code_name(letter, float(match[2])))
+            else:
+                letters.append(letter)
+        shape = self.plans[words] = Shape(tuple(codes), tuple(letters), {})
+        return shape
+
+    def arranged(self, codes: tuple[str, ...], letters: tuple[str, ...], known: dict[Any, Steps]) -> Steps:
+        """The steps of a block under the motion mode in force, remembered in `known`. Raises Refusal."""
+        motion = self.state.motion
+        rows = [find(name, self.dialect, name[0]) for name in codes]
+        steps = known[motion] = arrange(rows, letters, motion, self.dialect, self.state.axes)
+        return steps
+
+    def step(self, unit: Unit, line: int) -> int:
+        """Run a line of the general lane; returns the line to go on with. Raises Refusal."""
+        statement, literals = unit.statement(line)
+        if statement is None:
+            return line + 1
+        if isinstance(statement, Branch):
+            return self.branch(unit, line, statement)
+        m = self.state
+        try:
+            if statement.condition is not None:
+                truth = statement.condition(m, literals)
+                if truth is None:
+                    raise TypeError("null condition")
+                if truth == 0.0:
+                    return line + 1
+            values, results = statement.values(m, literals)
+            targets = [(named, target(m, literals)) for named, target in statement.targets]
+            label = statement.jump(m, literals) if statement.jump else None
+        except EVALUATION as failure:
+            self.explain(unit, line, failure)
+        for (named, target), value in zip(targets, results, strict=True):
+            self.assign(unit, line, named, target, value)
+        if statement.comment is not None:
+            text = statement.comment.lstrip()
+            if text or statement.comment:
+                m.out.event("COMMENT", text)
+        if statement.codes or values:
+            self.perform(unit, line, statement, values)
+        return self.jump(unit, line, statement.block, label) if statement.block.jump else line + 1
+
+    def assign(self, unit: Unit, line: int, named: bool, target: Any, value: float | None) -> None:
+        try:
+            if named:
+                self.state.write_name(target, value)
+            else:
+                self.state.write(target, value)
+        except (Refusal, TypeError) as failure:
+            if isinstance(failure, Refusal):
+                block = parse(unit.clean(line).code).body
+                assert isinstance(block, Block)
+                wheres = [setting.target.where for setting in block.settings]
+                failure.where = wheres[-1] if len(wheres) == 1 else None
+                raise
+            self.explain(unit, line, failure)
+
+    def perform(self, unit: Unit, line: int, statement: Statement, values: tuple[Any, ...]) -> None:
+        """Carry out the codes and words of a block. Raises Refusal."""
+        m = self.state
+        codes, letters = statement.codes, statement.letters
+        if statement.moving:
+            codes, letters, values = self.computed_codes(codes, letters, values)
+            steps = self.arranged(codes, letters, {})
+        else:
+            steps = statement.steps.get(m.motion) or self.arranged(codes, letters, statement.steps)
+        if None in values and not steps.null:
+            self.explain(unit, line, TypeError("null word"))
+        w = dict(zip(letters, values, strict=True))
+        for row in steps.codes:
+            if row.modal:
+                self.set_mode(row)
+            row.run(m, w)
+
+    def computed_codes(
+        self, codes: tuple[str, ...], letters: tuple[str, ...], values: tuple[Any, ...]
+    ) -> tuple[tuple[str, ...], tuple[str, ...], tuple[Any, ...]]:
+        """Words like G#1 turned into codes. Raises Refusal."""
+        named = list(codes)
+        rest: dict[str, Any] = {}
+        for letter, value in zip(letters, values, strict=True):
+            if letter in "gm":
+                if value is None:
+                    raise Refusal(F.NULL_VALUE, letter, what=f"the number of {letter.upper()}", operation="no code")
+                named.append(code_name(letter, value))
+            elif letter in rest:
+                raise Refusal(F.REPEATED_WORD, letter, word=letter.upper())
+            else:
+                rest[letter] = value
+        return tuple(named), tuple(rest), tuple(rest.values())
+
+    def explain(self, unit: Unit, line: int, failure: Exception) -> NoReturn:
+        """Raise the Refusal that says what failed in evaluating a line, and where."""
+        body = parse(unit.clean(line).code).body
+        null = isinstance(body, Block) and any(row.sole for row in self.rows_of(body))
+        block = body if isinstance(body, Block) else Block(condition=body.condition if body else None)
+        explain(block, self.state, failure, null)
+
+    def rows_of(self, block: Block) -> list[Code]:
+        names = ["call"] if block.call else []
+        for word in block.words:
+            if word.letter in "gm" and isinstance(word.value, Number):
+                names.append(code_name(word.letter, word.value.value))
+        return [self.dialect.codes[name] for name in names if name in self.dialect.codes]
+
+    # --- flow
+
+    def branch(self, unit: Unit, line: int, branch: Branch) -> int:
+        """Where a mark leads. Raises Refusal."""
+        mark, structure = branch.mark, unit.structure
+        if mark.kind in ("if", "while"):
+            return line + 1 if self.truth(unit, line, branch) else self.otherwise(unit, line)
+        if mark.kind == "end":
+            start = structure.onward.get(line)
+            return line + 1 if start is None else self.back(unit, line, start)
+        return structure.onward.get(line, line + 1)  # the end of a branch above: ELIF, ELSE
+
+    def truth(self, unit: Unit, line: int, branch: Branch) -> bool:
+        assert branch.condition is not None
+        try:
+            value = branch.condition(self.state, ())
+            if value is None:
+                raise TypeError("null condition")
+        except EVALUATION as failure:
+            self.explain(unit, line, failure)
+        return bool(value != 0.0)
+
+    def otherwise(self, unit: Unit, line: int) -> int:
+        """The line after a condition that is false: the next branch that is taken."""
+        structure = unit.structure
+        while True:
+            line = structure.otherwise.get(line, line + 1)
+            unit.seen[line : line + 1] = b"\1" if line < len(unit.seen) else b""
+            if unit.source.classes[line : line + 1] != bytes([scan.OTHER]):
+                return line
+            known = unit.statement(line)[0]
+            if not isinstance(known, Branch) or known.mark.kind in ("if", "while"):
+                return line
+            if known.mark.kind != "elif":
+                return line + 1
+            self.line = line
+            if self.truth(unit, line, known):
+                return line + 1
+
+    def jump(self, unit: Unit, line: int, block: Block, label: float | None) -> int:
+        """Where GOTO, BREAK or RETURN leads. Raises Refusal."""
+        jump = block.jump
+        assert jump is not None
+        try:
+            if jump.kind == "return":
+                self.state.transfer = Return()
+                return line + 1
+            if jump.kind == "break":
+                assert isinstance(jump.target, Number)
+                return unit.structure.after_break(line, str(int(jump.target.value)))
+            if label is None:
+                self.explain(unit, line, TypeError("null label"))
+            if label != round(label) or label < 0:
+                raise Refusal(F.NO_TARGET, label=f"{label:g}", where=unit.structure.routine(line).title())
+            target = unit.structure.target(line, int(label), unit.source, self.settings.block_delete)
+        except Refusal as refusal:
+            refusal.where = refusal.where or self.jump_place(unit, line)
+            raise
+        return target if target > line else self.back(unit, line, target)
+
+    def jump_place(self, unit: Unit, line: int) -> tuple[int, int] | None:
+        body = parse(unit.clean(line).code).body
+        return body.jump.where if isinstance(body, Block) and body.jump else None
+
+    def back(self, unit: Unit, line: int, target: int) -> int:
+        """Jump back: count it, and see whether the loop can ever end. Raises Refusal."""
+        self.count(line - target + 1, target, line)
+        self.passes += 1
+        if self.passes & (self.passes - 1) == 0:
+            self.watched = (line, self.passes, self.state.snapshot())
+        elif self.watched and self.watched[0] == line and self.passes - self.watched[1] <= WATCH:
+            if self.watched[2] == self.state.snapshot():
+                raise Refusal(F.ENDLESS_LOOP, first=target + 1, last=line + 1)
+        return target
+
+    def count(self, blocks: int, first: int, last: int) -> None:
+        """Count blocks that run again. Raises Refusal when they are too many."""
+        self.repeated += blocks
+        if self.repeated > self.settings.limits.blocks:
+            raise Refusal(F.BLOCK_BUDGET, limit=self.settings.limits.blocks, first=first + 1, last=last + 1)
+
+    # --- calls and ends
+
+    def follow(self, line: int) -> int:
+        """Go where the block's transfer leads; `line` is the one after it. Raises Refusal, Stopped."""
+        m = self.state
+        transfer, m.transfer = m.transfer, None
+        match transfer:
+            case Call():
+                return self.call(transfer, line)
+            case Return():
+                return self.leave()
+            case Restart():
+                return self.restart(line)
+            case End():
+                self.finish(transfer)
+        raise Stopped
+
+    def call(self, call: Call, back: int) -> int:
+        """Enter a subroutine; returns its first line. Raises Refusal."""
+        if call.repeat == 0:
+            return back
+        unit, routine = self.lookup(call)
+        if len(self.stack) >= DEEPEST_CALL:
+            raise Refusal(F.TOO_DEEP, limit=DEEPEST_CALL, what="calls")
+        m = self.state
+        level = Level(self.unit, self.routine, back, m.line, call, call.repeat, m.locals, m.scope)
+        self.stack.append(level)
+        m.calls = len(self.stack)
+        return self.enter(level, unit, routine)
+
+    def enter(self, level: Level, unit: Unit, routine: Routine) -> int:
+        """Start a subroutine, for the first time or again."""
+        m = self.state
+        self.unit, self.routine = unit, routine
+        m.out.file = self.files.index(unit.source.name)
+        m.scope = {}
+        self.count(1, routine.first, routine.first)
+        if level.call.arguments is not None:
+            m.locals = [None] * 34
+            for letter, value in level.call.arguments.items():
+                m.locals[ARGUMENTS[letter]] = value
+                m.scope[f"_args.{letter}"] = value
+        return routine.first
+
+    def lookup(self, call: Call) -> tuple[Unit, Routine]:
+        """The subroutine of a name: in the calling file, then in the macros folders. Raises Refusal."""
+        routine = self.unit.structure.routines.get(call.name)
+        if routine is not None:
+            return self.unit, routine
+        name = f"O{call.name}" if call.numbered else call.name
+        unit = self.external(name)
+        if unit is None:
+            hint = "subroutines stand in the file, or as files in the macros folders (--macros)"
+            raise Refusal(F.NO_SUBROUTINE, "p", name=name, hint=hint)
+        routines = unit.structure
+        return unit, routines.routines.get(call.name, routines.main)
+
+    def external(self, name: str) -> Unit | None:
+        """The unit of a macro file. Raises Refusal for names that are no file names."""
+        found = macros.find(name, self.machine.macros)
+        if found is None:
+            return None
+        key = str(found)
+        if key not in self.units:
+            try:
+                source = Source.load(found)
+            except OSError as error:
+                raise Refusal(F.CANNOT_READ, "p", reason=error.strerror) from None
+            self.units[key] = Unit(source, self.dialect, self.settings.block_delete, self.settings.limits.line)
+            self.files.append(key)
+            self.check_structure(self.units[key])
+            if self.failed and not self.settings.keep_going:
+                raise Stopped
+        return self.units[key]
+
+    def leave(self) -> int:
+        """M99, ENDSUB, RETURN: run the subroutine again, or go back to the caller. Raises Stopped."""
+        if not self.stack:  # at top level it ends the program like the end of the file (AMB-CALL-10)
+            return self.run_off()
+        m = self.state
+        level = self.stack.pop()
+        self.count(m.line - self.routine.first, self.routine.first, m.line - 1)
+        if level.left > 1:
+            self.stack.append(level._replace(left=level.left - 1))
+            if level.call.arguments is not None:
+                m.locals = level.locals
+            return self.enter(level, self.unit, self.routine)
+        if level.call.arguments is not None:
+            m.locals = level.locals
+        m.scope = level.scope
+        m.calls = len(self.stack)
+        self.unit, self.routine = level.unit, level.routine
+        m.out.file = self.files.index(level.unit.source.name)
+        return level.back
+
+    def run_off(self) -> int:
+        """The routine has no more lines. Raises Stopped at the end of the program."""
+        if self.stack:
+            if self.routine.name and self.unit is self.stack[0].unit:
+                refusal = Refusal(F.NO_SUBROUTINE_END, name=self.routine.name)
+                self.tell_refusal(refusal, self.unit, self.routine.declared)
+                if not self.settings.keep_going:
+                    raise Stopped
+            return self.leave()
+        if not self.unit.percent:
+            last = self.routine.end - 1
+            while last > 0 and not self.unit.seen[last]:
+                last -= 1
+            self.tell_refusal(Refusal(F.NO_PROGRAM_END), self.unit, last)
+        self.finish(End(reset=False))
+        raise Stopped
+
+    def restart(self, line: int) -> int:
+        """M47: from the first line again, as often as the settings allow. Raises Stopped."""
+        self.state.restarts += 1
+        if self.state.restarts > self.settings.restarts:
+            self.finish(End(reset=False))
+            raise Stopped
+        self.count(line, 0, line)
+        self.stack.clear()
+        self.unit = self.units[self.files[0]]
+        self.routine = self.unit.structure.main
+        self.state.out.file = 0
+        return self.routine.first
+
+    def finish(self, end: End) -> None:
+        self.ended = end
+        starting.finish(self.state, end)

@@ -1,0 +1,284 @@
+"""Motion: straight moves and arcs, and the codes that send the machine home.
+
+Sources: 000 sections 1.1, 1.6, 1.8; decisions AMB-COD-3 to AMB-COD-6, AMB-COD-11,
+AMB-COD-12, AMB-FEED-1, AMB-FEED-3, AMB-XF-15 to AMB-XF-19.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from math import hypot, sqrt
+
+from aircut.canon import EXACT_STOP, INVERSE_TIME, ROW, Kind
+from aircut.diagnostics import Refusal
+from aircut.diagnostics import faults as F
+from aircut.geometry import arcs
+from aircut.interpreter.state import INCH, PLANES, State, out_of_range, whole
+from aircut.interpreter.table import AXES, Code, Group, Order, Words
+
+pack = ROW.pack
+TRAVERSE, FEED, ARC = int(Kind.TRAVERSE), int(Kind.FEED), int(Kind.ARC)
+NUMBERED_AXES = tuple(enumerate(AXES))
+LINEAR_AXES = NUMBERED_AXES[:3]
+ROTARY_AXES = NUMBERED_AXES[3:]
+CENTER_WORDS = "ijk"
+MISMATCH = 0.0254  # mm by which an arc's two radii may differ, or
+MISMATCH_SHARE = 0.001  # this part of the larger
+RADIUS_SLACK = 1e-4  # part of the chord by which an R may be too short
+SLOWEST = 0.1  # program units a minute: a lower inverse-time feed is told as this
+TINY = 1e-7  # mm: shorter linear moves count as rotary ones (canonical listing, section 14)
+
+
+def target(m: State, w: Words) -> list[float] | None:
+    """Where the axis words lead, in the program's frame; None without axis words."""
+    unit = m.unit
+    goal = m.position[:]
+    named = False
+    if m.machine_frame:
+        for i, axis in NUMBERED_AXES:
+            if axis in w:
+                named = True
+                goal[i] = w[axis] * (unit if i < 3 else 1.0) - m.offset[i] - m.tool_offset[i]
+    elif m.absolute:
+        for i, axis in LINEAR_AXES:
+            if axis in w:
+                named = True
+                goal[i] = w[axis] * unit
+        for i, axis in ROTARY_AXES:
+            if axis in w:
+                named = True
+                goal[i] = w[axis]
+    else:
+        for i, axis in NUMBERED_AXES:
+            if axis in w:
+                named = True
+                goal[i] += w[axis] * (unit if i < 3 else 1.0)
+    return goal if named else None
+
+
+def feed_speed(m: State, w: Words, length: float, rotary: bool = False) -> float:
+    """Speed of a feed move of this length (mm; degrees if rotary), per minute. Raises Refusal."""
+    if m.inverse_time:
+        if w.get("f", 0.0) <= 0.0:
+            raise Refusal(F.INVERSE_TIME_FEED, "f")
+        unit = 1.0 if rotary else m.unit
+        speed = max(SLOWEST * unit, m.feed * length)
+        m.out.event("SET_FEED_RATE", speed / unit * m.unit)
+        return speed
+    if m.feed <= 0.0:
+        speed = m.machine.options.default_feed
+        if m.machine.options.missing_feed == "error":
+            raise Refusal(F.MISSING_FEED)
+        if m.feed_told != speed:
+            m.feed_told = speed
+            m.warn(F.NO_FEED, feed=speed)
+            m.out.event("SET_FEED_RATE", speed)
+        return speed
+    return m.feed
+
+
+def length_of(start: list[float], end: list[float]) -> tuple[float, bool]:
+    """Length of a straight move, and whether only rotary axes move: then in degrees."""
+    dx, dy, dz = end[0] - start[0], end[1] - start[1], end[2] - start[2]
+    linear = sqrt(dx * dx + dy * dy + dz * dz)
+    if linear > TINY:
+        return linear, False
+    return sqrt(sum((end[i] - start[i]) ** 2 for i in (3, 4, 5))), True
+
+
+def write(m: State, kind: int, goal: list[float], speed: float, flags: int) -> None:
+    """Record a straight move, and be there."""
+    o = m.offset
+    out = m.out
+    out.rows += pack(
+        goal[0] + o[0], goal[1] + o[1], goal[2] + o[2], goal[3] + o[3], goal[4] + o[4], goal[5] + o[5],
+        0.0, 0.0, speed, out.line, m.tool, 0, out.file, kind, m.plane, flags,
+    )  # fmt: skip
+    m.position = goal
+
+
+def traverse(m: State, w: Words) -> None:
+    """G0: as fast as the axes can."""
+    goal = target(m, w)
+    if goal is not None:
+        write(m, TRAVERSE, goal, 0.0, m.flags)
+    m.machine_frame = False
+
+
+def feed(m: State, w: Words) -> None:
+    """G1: straight at the feed rate."""
+    goal = target(m, w)
+    if goal is None:
+        return
+    flags = m.flags
+    if m.exact_stop:
+        flags |= EXACT_STOP
+        m.exact_stop = False
+    m.machine_frame = False
+    if m.inverse_time or m.feed <= 0.0 or m.unit != 1.0:
+        length, rotary = length_of(m.position, goal)
+        speed = feed_speed(m, w, length, rotary)
+        if m.inverse_time:
+            flags |= INVERSE_TIME
+        elif rotary and length:
+            speed /= m.unit  # degrees are never scaled (AMB-FEED-6)
+    else:
+        speed = m.feed
+    write(m, FEED, goal, speed, flags)
+
+
+def arc(turn: int, m: State, w: Words) -> None:
+    """G2 (turn -1) and G3 (turn +1): arcs and helices in the active plane."""
+    goal = target(m, w)
+    centered = any(letter in w for letter in CENTER_WORDS)
+    if goal is None and not centered and "r" not in w:
+        return
+    turns = turns_of(w)
+    axes = arcs.PLANE_AXES[m.plane]
+    end = goal or m.position[:]
+    here = (m.position[axes[0]], m.position[axes[1]])
+    there = (end[axes[0]], end[axes[1]])
+    if "r" in w:
+        if centered:
+            raise Refusal(F.ARC_CENTER_AND_RADIUS, "r")
+        if not any(AXES[i] in w for i in axes[:2]):
+            raise Refusal(F.ARC_NO_END, "r")
+        center = center_by_radius(m, w, turn, here, there)
+    elif centered:
+        center = center_by_words(m, w, turn, axes, here)
+        check_radii(m, here, there, center)
+    else:
+        plane = CENTER_WORDS[min(axes[:2])] + " and " + CENTER_WORDS[max(axes[:2])]
+        raise Refusal(F.ARC_NO_CENTER, code="G2" if turn < 0 else "G3", words=plane.upper())
+    flags = m.flags
+    if m.exact_stop:
+        flags |= EXACT_STOP
+        m.exact_stop = False
+    if m.inverse_time:
+        flags |= INVERSE_TIME
+        radius = hypot(here[0] - center[0], here[1] - center[1])
+        around = radius * arcs.sweep(here, there, center, turn * turns)
+        speed = feed_speed(m, w, hypot(around, end[axes[2]] - m.position[axes[2]]))
+    else:
+        speed = m.feed if m.feed > 0.0 else feed_speed(m, w, 0.0)
+    o = m.offset
+    out = m.out
+    out.rows += pack(
+        end[0] + o[0], end[1] + o[1], end[2] + o[2], end[3] + o[3], end[4] + o[4], end[5] + o[5],
+        center[0] + o[axes[0]], center[1] + o[axes[1]], speed,
+        out.line, m.tool, turn * turns, out.file, ARC, m.plane, flags,
+    )  # fmt: skip
+    m.position = end
+
+
+def turns_of(w: Words) -> int:
+    """The P word of an arc. Raises Refusal."""
+    if "p" not in w:
+        return 1
+    turns = whole(w, "p")
+    if not 1 <= turns <= 32767:
+        raise out_of_range(w, "p", "the number of turns, from 1 to 32767")
+    return turns
+
+
+def center_by_words(
+    m: State, w: Words, turn: int, axes: tuple[int, int, int], here: tuple[float, float]
+) -> tuple[float, float]:
+    """Center from I, J, K, in the plane's axes, mm. Raises Refusal."""
+    across = CENTER_WORDS[axes[2]]
+    if across in w:
+        raise Refusal(F.ARC_WRONG_CENTER, across, plane=PLANES[m.plane])
+    words = [CENTER_WORDS[axis] for axis in axes[:2]]
+    if m.arc_absolute:
+        for word in words:
+            if word not in w:
+                wanted = " and ".join(sorted(words)).upper()
+                raise Refusal(F.ARC_NO_CENTER, code="under G90.1, G2" if turn < 0 else "under G90.1, G3", words=wanted)
+        return w[words[0]] * m.unit, w[words[1]] * m.unit
+    return here[0] + w.get(words[0], 0.0) * m.unit, here[1] + w.get(words[1], 0.0) * m.unit
+
+
+def check_radii(m: State, here: tuple[float, float], there: tuple[float, float], center: tuple[float, float]) -> None:
+    """Refuse arcs whose ends lie on different circles (AMB-COD-6)."""
+    first = hypot(here[0] - center[0], here[1] - center[1])
+    last = hypot(there[0] - center[0], there[1] - center[1])
+    if first < TINY:
+        raise Refusal(F.ARC_ZERO_RADIUS)
+    gap = abs(first - last)
+    if gap > MISMATCH and gap > MISMATCH_SHARE * max(first, last):
+        raise Refusal(
+            F.ARC_RADIUS_MISMATCH,
+            start=first / m.unit,
+            end=last / m.unit,
+            difference=gap / m.unit,
+            unit="in" if m.unit == INCH else "mm",
+        )
+
+
+def center_by_radius(
+    m: State, w: Words, turn: int, here: tuple[float, float], there: tuple[float, float]
+) -> tuple[float, float]:
+    """Center from R, in the plane's axes, mm. Raises Refusal."""
+    chord = hypot(there[0] - here[0], there[1] - here[1])
+    if chord < TINY:
+        raise Refusal(F.ARC_SAME_END, "r")
+    center = arcs.center_of_radius(here, there, w["r"] * m.unit, turn, RADIUS_SLACK * chord)
+    if center is None:
+        unit = "in" if m.unit == INCH else "mm"
+        raise Refusal(F.ARC_RADIUS_TOO_SMALL, "r", radius=w["r"], half=chord / 2 / m.unit, unit=unit)
+    return center
+
+
+def exact_stop(m: State, w: Words) -> None:
+    """G9: the motion of this block stops at its end."""
+    m.exact_stop = True
+
+
+def machine_frame(m: State, w: Words) -> None:
+    """G53: the axis words of this block are machine coordinates."""
+    m.machine_frame = True
+
+
+def cancel(m: State, w: Words) -> None:
+    """G80: no motion mode."""
+    m.out.event("COMMENT", "interpreter: motion mode set to none")
+
+
+def go_home(stored: str, m: State, w: Words) -> None:
+    """G28, G30: through the point given to the stored point, in the named axes or in all."""
+    middle = target(m, w)
+    if middle is not None and middle != m.position:
+        write(m, TRAVERSE, middle, 0.0, m.flags)
+    home = getattr(m, stored)
+    goal = m.position[:]
+    for i, axis in NUMBERED_AXES:
+        if axis in m.axes and (middle is None or axis in w):
+            goal[i] = home[i] - m.offset[i] - m.tool_offset[i]
+    if goal != m.position:
+        write(m, TRAVERSE, goal, 0.0, m.flags)
+
+
+def store_home(stored: str, m: State, w: Words) -> None:
+    """G28.1, G30.1: remember where the machine is."""
+    setattr(m, stored, m.machine_position())
+
+
+move = partial(Code, group=Group.MOTION, order=Order.MOTION, axes=True, modal=True)
+arc_move = partial(move, takes="ijkrp", wakes="ijk")
+single = partial(Code, group=Group.NON_MODAL, order=Order.NON_MODAL)
+
+CODES = (
+    move("G0", "Straight traverse", traverse),
+    move("G1", "Straight feed", feed),
+    arc_move("G2", "Clockwise arc feed", partial(arc, -1)),
+    arc_move("G3", "Counterclockwise arc feed", partial(arc, +1)),
+    Code("G9", "Exact stop, for one block", exact_stop, Group.EXACT_STOP, Order.ROTATION,
+         fits=("G1", "G2", "G3"), alone="g1"),
+    Code("G53", "Machine coordinates, for one block", machine_frame, Group.NON_MODAL, Order.ROTATION,
+         fits=("G0", "G1", "G9", "G38.2", "G38.3", "G38.4", "G38.5")),
+    Code("G80", "Cancel the motion mode", cancel, Group.MOTION, Order.MOTION, modal=True, weak=True),
+    single("G28", "Go to the G28 position", partial(go_home, "home"), axes=True),
+    single("G30", "Go to the G30 position", partial(go_home, "second_home"), axes=True),
+    single("G28.1", "Store the G28 position", partial(store_home, "home")),
+    single("G30.1", "Store the G30 position", partial(store_home, "second_home")),
+)  # fmt: skip

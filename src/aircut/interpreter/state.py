@@ -1,0 +1,208 @@
+"""The state of a run: position, modes, offsets, variables.
+
+Lengths are mm, angles degrees, speeds mm/min. `position` is the controlled point
+in the program's own frame; adding `offset` gives machine coordinates.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from aircut.canon import Recorder
+from aircut.diagnostics import Refusal
+from aircut.diagnostics import faults as F
+from aircut.language.arithmetic import EQUAL
+from aircut.machine import Machine
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from aircut.interpreter.table import Code, Dialect, Group
+
+INCH = 25.4  # mm
+PLANES = ("XY", "XZ", "YZ")  # by plane number, as canonical commands name them
+WORK_SYSTEMS = 9
+
+
+class State:
+    """All that a block can read and change. Handlers get it as their first argument."""
+
+    def __init__(self, dialect: Dialect, machine: Machine, warn: Callable[..., None]) -> None:
+        self.dialect = dialect
+        self.machine = machine
+        self.warn = warn  # warn(fault, letter="", **values)
+        self.out = Recorder()
+        self.axes = machine.letters
+
+        self.position = [0.0] * 6
+        self.offset = [0.0] * 6  # work system + G52 + G92
+        self.origins = [[0.0] * 6 for _ in range(WORK_SYSTEMS)]
+        self.system = 0
+        self.local = [0.0] * 6  # G52
+        self.shift = [0.0] * 6  # G92
+        self.shifted = False
+        self.home = [0.0] * 6  # G28, machine axes
+        self.second_home = [0.0] * 6  # G30
+        self.tool_offset = [0.0] * 6
+
+        self.modal: dict[Group, Code] = {}
+        self.motion: Code | None = None  # the modal code of group MOTION
+        self.unit = 1.0  # mm a program unit
+        self.absolute = True
+        self.arc_absolute = False
+        self.inverse_time = False
+        self.plane = 0
+        self.flags = 0  # of the toolpath's rows, from the path mode
+        self.blend = 0.0  # G64 P
+        self.thinning = 0.0  # G64 Q
+        self.exact_stop = False  # G9, for one block
+        self.machine_frame = False  # G53, for one block
+
+        self.feed = 0.0  # mm/min; under G93 the F word itself
+        self.feed_told = 0.0  # what the listing last heard
+        self.speed = 0.0  # revolutions a minute
+        self.spindle = 5
+        self.mist = False
+        self.flood = False
+        self.selected_tool = 0
+        self.tool = 0
+        self.feed_override = 1
+        self.speed_override = 1
+        self.stop_code: float | None = None
+        self.tool_code: float | None = None
+        self.feed_override_code = 48.0
+        self.speed_override_code = 48.0
+
+        self.locals: list[float | None] = [None] * 34
+        self.numbered: list[float | None] = [None] * 7000
+        self.names: dict[str, float | None] = {}
+        self.scope: dict[str, float | None] = {}
+        self.line = 0  # line being run, from 1
+        self.calls = 0  # depth
+        self.restarts = 0  # by M47
+        self.transfer: Any = None  # where control goes after the block: a Call, Return, End or Restart
+
+    # --- position
+
+    def add_offsets(self) -> None:
+        """Recompute `offset`; the machine position stays, so the program position changes."""
+        origin, local, shift = self.origins[self.system], self.local, self.shift
+        on = 1.0 if self.shifted else 0.0
+        before = self.offset
+        self.offset = [origin[i] + local[i] + on * shift[i] for i in range(6)]
+        self.position = [p + b - o for p, b, o in zip(self.position, before, self.offset, strict=True)]
+
+    def told_shift(self) -> list[float]:
+        """G52 and G92 together, as SET_G92_OFFSET tells them."""
+        return [a + (b if self.shifted else 0.0) for a, b in zip(self.local, self.shift, strict=True)]
+
+    def machine_position(self) -> list[float]:
+        """Positions of the machine's axes: the tool's offset included."""
+        return [p + o + t for p, o, t in zip(self.position, self.offset, self.tool_offset, strict=True)]
+
+    # --- variables
+
+    def read(self, index: float | None) -> float | None:
+        """Value of a numbered variable. Raises Refusal."""
+        number = self.number_of(index)
+        if number < 34:
+            return self.locals[number] if number else None
+        for row in self.dialect.ranges:
+            if row.first <= number <= row.last:
+                return self.numbered[number]
+        for system in self.dialect.system:
+            if system.first <= number <= system.last:
+                value = system.read(self, number - system.first)
+                if system.unit == "length" and value is not None:
+                    return value / self.unit
+                return value
+        return self.unlisted(number)
+
+    def number_of(self, index: float | None) -> int:
+        if index is None:
+            raise TypeError("null index")
+        number = round(index) if abs(index) < 1e9 else -1
+        if abs(index - number) > EQUAL or number < 0:
+            wanted = "variables have whole numbers from 0"
+            raise Refusal(F.BAD_INDEX, value=f"{index:g}", wanted=wanted)
+        return number
+
+    def unlisted(self, number: int) -> None:
+        if 5000 <= number <= 5999:
+            return
+        raise Refusal(F.NO_VARIABLE, number=number, hint=self.dialect.no_variable)
+
+    def write(self, index: float | None, value: float | None) -> None:
+        """Assign a numbered variable. Raises Refusal."""
+        number = self.number_of(index)
+        if 0 < number < 34:
+            self.locals[number] = value
+            return
+        if number == 0:
+            raise Refusal(F.READ_ONLY, what="#0", title="it is null by definition")
+        for row in self.dialect.ranges:
+            if row.first <= number <= row.last:
+                if not row.writable:
+                    raise Refusal(F.READ_ONLY, what=f"#{number}", title=row.title)
+                self.numbered[number] = value
+                return
+        for system in self.dialect.system:
+            if system.first <= number <= system.last:
+                if system.write is None:
+                    raise Refusal(F.READ_ONLY, what=f"#{number}", title=system.title)
+                if value is not None and system.unit == "length":
+                    value *= self.unit
+                system.write(self, number - system.first, value)
+                return
+        self.unlisted(number)
+        raise Refusal(F.READ_ONLY, what=f"#{number}", title="a system variable without a meaning")
+
+    def is_local(self, name: str) -> bool:
+        return name.startswith("_") == self.dialect.local_underscore
+
+    def exists(self, name: str) -> bool:
+        """Whether a named variable has been given a value (a predefined one has)."""
+        return name in self.dialect.named or name in (self.scope if self.is_local(name) else self.names)
+
+    def read_name(self, name: str) -> float | None:
+        """Value of a named variable. Raises Refusal."""
+        if name in self.dialect.named:
+            return self.dialect.named[name].read(self)
+        try:
+            return (self.scope if self.is_local(name) else self.names)[name]
+        except KeyError:
+            raise Refusal(F.UNDEFINED_NAME, name=name) from None
+
+    def write_name(self, name: str, value: float | None) -> None:
+        """Assign a named variable. Raises Refusal."""
+        if name in self.dialect.named:
+            raise Refusal(F.READ_ONLY, what=f"#<{name}>", title=self.dialect.named[name].title)
+        (self.scope if self.is_local(name) else self.names)[name] = value
+
+    # --- comparing states
+
+    def snapshot(self) -> tuple[Any, ...]:
+        """All that can decide what happens next: equal snapshots at one place mean an endless loop."""
+        skip = ("out", "dialect", "machine", "warn", "line")
+        return tuple(frozen(value) for name, value in self.__dict__.items() if name not in skip)
+
+
+def frozen(value: Any) -> Any:
+    """A copy that later changes do not touch."""
+    if isinstance(value, list):
+        return tuple(frozen(item) if isinstance(item, list) else item for item in value)
+    return dict(value) if isinstance(value, dict) else value
+
+
+def whole(words: Mapping[str, Any], letter: str) -> int:
+    """The value of a word that must be a whole number (within 0.0001). Raises Refusal."""
+    value = words[letter]
+    nearest = round(value) if abs(value) < 1e15 else 0
+    if abs(value - nearest) > EQUAL:
+        raise Refusal(F.NOT_INTEGER, letter, value=value)
+    return nearest
+
+
+def out_of_range(words: Mapping[str, Any], letter: str, wanted: str) -> Refusal:
+    """The Refusal of a word's value."""
+    return Refusal(F.BAD_VALUE, letter, value=words[letter], wanted=wanted)

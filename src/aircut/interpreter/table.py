@@ -1,0 +1,157 @@
+"""The rows that make a language: codes, word items, variables, and a dialect of them all."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from enum import IntEnum, IntFlag, auto
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from aircut.interpreter.state import State
+
+Words = Mapping[str, Any]  # letter -> value, of one block
+Handler = Callable[["State", Words], None]
+
+AXES = "xyzabc"
+
+
+class Group(IntFlag):
+    """Modal groups: of each, a block has one code at most. A code may stand in more than one."""
+
+    MOTION = auto()
+    EXACT_STOP = auto()
+    PLANE = auto()
+    DISTANCE = auto()
+    ARC_DISTANCE = auto()
+    FEED_MODE = auto()
+    UNITS = auto()
+    CUTTER = auto()
+    TOOL_LENGTH = auto()
+    RETRACT = auto()
+    SCALING = auto()
+    SYSTEM = auto()
+    PATH = auto()
+    MACRO = auto()
+    ROTATION = auto()
+    POLAR = auto()
+    NON_MODAL = auto()
+    STOP = auto()
+    SPINDLE = auto()
+    TOOL = auto()
+    MIST = auto()
+    FLOOD = auto()
+    TORCH = auto()
+    FEED_OVERRIDE = auto()
+    SPEED_OVERRIDE = auto()
+    IO = auto()
+    MESSAGE = auto()
+    TOOL_MACRO = auto()
+    CALL = auto()
+    RETURN = auto()
+
+
+class Order(IntEnum):
+    """Places in the order of execution of a block. Source: 000 section 1.7, decision AMB-EXE-1."""
+
+    FEED_MODE = auto()
+    FEED = auto()
+    SPEED = auto()
+    TOOL = auto()
+    IO = auto()
+    TOOL_CHANGE = auto()
+    SPINDLE = auto()
+    COOLANT = auto()
+    OVERRIDE = auto()
+    MACRO_START = auto()
+    MESSAGE = auto()
+    MACRO_END = auto()
+    DWELL = auto()
+    PLANE = auto()
+    UNITS = auto()
+    CUTTER = auto()
+    TOOL_LENGTH = auto()
+    SYSTEM = auto()
+    PATH = auto()
+    DISTANCE = auto()
+    POLAR = auto()
+    ARC_DISTANCE = auto()
+    RETRACT = auto()
+    NON_MODAL = auto()
+    SCALING = auto()
+    ROTATION = auto()
+    MOTION = auto()
+    STOP = auto()
+    CALL = auto()
+    RETURN = auto()
+
+
+class Code(NamedTuple):
+    """One G or M code, or word item (F, S, T): all that the house knows of it."""
+
+    name: str  # as programmed: "G59.1"
+    title: str
+    run: Handler
+    group: Group
+    order: Order
+    takes: str = ""  # letters of the words it may have
+    needs: str = ""  # letters that it must have; of those with a slash between, one
+    axes: bool = False  # it takes the axis words
+    needs_axes: bool = False  # and wants one at least
+    modal: bool = False  # it stays in force: State.modal holds the row
+    weak: bool = False  # gives way to another code of its group in the block
+    wakes: str = ""  # letters that make it run while modal, beside the axis words
+    fits: tuple[str, ...] = ()  # motions that it may stand beside, if not all
+    alone: str = ""  # the code that the axis words beside it mean, when the mode in force does not fit
+    sole: bool = False  # the only G or M code of its block; every letter is its argument
+    supported: bool = True  # False: run raises not-supported-yet
+
+    @property
+    def number(self) -> float:
+        """The code number as the system variables report it: 59.1 for G59.1."""
+        return float(self.name[1:])
+
+
+class SystemVariable(NamedTuple):
+    """A range of numbered system variables, with what they read as; length-valued ones read in the active unit."""
+
+    first: int
+    last: int
+    title: str
+    read: Callable[[State, int], float | None]  # the state and the place within the range, from 0
+    unit: str = ""  # "length": mm, turned into the active unit
+    write: Callable[[State, int, float | None], None] | None = None
+
+
+class Range(NamedTuple):
+    """A range of numbered variables that hold what is put into them."""
+
+    first: int
+    last: int
+    title: str
+    initial: str  # "null" or "table": from the machine
+    writable: bool = True
+
+
+class NamedParameter(NamedTuple):
+    """A predefined, read-only named variable."""
+
+    name: str
+    title: str
+    read: Callable[[State], float | None]
+
+
+class Dialect(NamedTuple):
+    """A language: its tables and the switches of its grammar."""
+
+    name: str
+    title: str
+    codes: Mapping[str, Code]  # by normalized text: "g59.1", "m3", "call"
+    items: Mapping[str, Code]  # by letter
+    unsupported: frozenset[str]  # codes that belong to relatives of the language only
+    ranges: tuple[Range, ...]
+    system: tuple[SystemVariable, ...]
+    named: Mapping[str, NamedParameter]
+    start: tuple[str, ...]  # codes in force when a run starts
+    local_underscore: bool  # a leading _ makes a named variable local (else: global)
+    settings: Mapping[int, Code]  # G10's L numbers
+    no_variable: str  # hint for numbers outside all ranges

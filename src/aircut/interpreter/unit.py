@@ -1,0 +1,272 @@
+"""A program file made ready to run: its structure, and its lines compiled as they are first met."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from aircut.diagnostics import Refusal, Span
+from aircut.diagnostics import faults as F
+from aircut.interpreter.arranging import code_name
+from aircut.interpreter.compiling import compile_block, compile_name, compile_value
+from aircut.kernels import scan
+from aircut.language import structure
+from aircut.language.blocks import Block, Line, Mark, parse
+from aircut.language.expressions import Name, Number, Text, Variable
+from aircut.language.text import COMMENT, Clean, clean, columns
+from aircut.source import BATCH, Batch
+
+if TYPE_CHECKING:
+    from array import array
+
+    from aircut.interpreter.table import Code, Dialect
+    from aircut.source import Source
+
+FIRST_BATCH = 16  # lines scanned when the program has jumped
+#: Literal numbers that do not decide what a line means, so that lines differing in them share a shape.
+LITERAL = re.compile(r"(?<=[abcdefhijklpqrstuvwxyz=\[+\-*/,])(\d+\.?\d*|\.\d+)(?![\d.])")
+LABEL = re.compile(r"(?:n\d+)?\x01*")
+MARK_START = re.compile(r"\x01*(?:n\d+)?\x01*(?:if\[|elif|else|end\d|while|sub[\d\"]|o[\d\"])")
+
+
+class Shape(NamedTuple):
+    """What lines of one shape have in common."""
+
+    codes: tuple[str, ...]  # normalized names of the codes written with literal numbers
+    letters: tuple[str, ...]  # of the other words
+    steps: dict[Code | None, Any]  # by the motion mode in force
+
+
+class Statement(NamedTuple):
+    """A compiled line."""
+
+    block: Block
+    codes: tuple[str, ...]
+    letters: tuple[str, ...]  # of the words that are not literal codes, in order
+    moving: bool  # among the letters are codes whose number is computed
+    values: Callable[..., Any]
+    targets: tuple[tuple[bool, Any], ...]  # of the settings: (named, its number, name, or function of it)
+    condition: Callable[..., Any] | None
+    jump: Callable[..., Any] | None  # the label of a GOTO
+    steps: dict[Any, Any]
+    comment: str | None
+
+
+class Branch(NamedTuple):
+    """A mark with its condition compiled."""
+
+    mark: Mark
+    condition: Callable[..., Any] | None
+
+
+class Unit:
+    """One text, ready to run in a dialect."""
+
+    def __init__(self, source: Source, dialect: Dialect, block_delete: bool, line_limit: int) -> None:
+        self.source = source
+        self.dialect = dialect
+        self.block_delete = block_delete
+        self.line_limit = line_limit
+        self.statements: dict[int, tuple[Statement | Branch | None, tuple[float, ...]]] = {}
+        self.shared: dict[str, Statement] = {}
+        self.encoding: list[tuple[int, Refusal]] = []  # warnings
+        self.seen = bytearray(len(source))
+        self.percent = False
+        self.plain: dict[int, tuple[Shape, Any]] = {}  # plain lines that run again
+        self.batch = Batch(min(BATCH, max(len(source), 1)))
+        self.room = FIRST_BATCH
+        first, end = self.limits()
+        self.structure = structure.build(self.marks(first, end), first, end)
+
+    # --- text
+
+    def clean(self, line: int) -> Clean:
+        """The clean text of a line. Raises Refusal with the place in the line as written."""
+        if self.source.length(line) > self.line_limit:
+            length = self.source.length(line)
+            raise Refusal(F.LINE_TOO_LONG, where=(0, 1), length=length, limit=self.line_limit)
+        return clean(self.source.text(line))
+
+    def limits(self) -> tuple[int, int]:
+        """First line of the program and the line after its last: what `%` leaves."""
+        classes = self.source.classes
+        first = 0
+        while first < len(classes) and classes[first] == scan.BLANK:
+            first += 1
+        end = len(classes)
+        at = self.source.data.find(b"%")
+        while at >= 0:
+            line = structure.bisect_right(self.source.starts, at) - 1
+            if self.source.raw(line).strip() == b"%":
+                if line != first:
+                    return (first + 1 if self.percent else first), line
+                self.percent = True
+            at = self.source.data.find(b"%", at + 1)
+        return (first + 1 if self.percent else first), end
+
+    def marks(self, first: int, end: int) -> Iterator[tuple[int, Mark]]:
+        """The marks among the lines; lines that cannot be read are left for later."""
+        classes = self.source.classes
+        line = classes.find(scan.OTHER, first, end)
+        while line >= 0:
+            try:
+                code = self.clean(line).code
+                if MARK_START.match(code):
+                    body = parse(code).body
+                    if isinstance(body, Mark):
+                        yield line, body
+            except Refusal:
+                pass
+            line = classes.find(scan.OTHER, line + 1, end)
+
+    def place(self, line: int, refusal: Refusal) -> Span:
+        """Columns of a fault in a line, from 1."""
+        text = self.source.text(line) if self.source.length(line) <= self.line_limit else ""
+        try:
+            code = clean(text).code
+        except Refusal as raised:  # the line could not even be cleaned: the place is as written
+            start, end = raised.where or (0, 1)
+            return Span(line + 1, start + 1, end + 1)
+        where = refusal.where or self.find_word(code, refusal.letter)
+        places = columns(text)
+        start, end = min(where[0], len(places) - 1), min(max(where[1], where[0] + 1), len(places))
+        return Span(line + 1, places[start] + 1, places[end - 1] + 2)
+
+    def find_word(self, code: str, letter: str) -> tuple[int, int]:
+        """Where a word stands in a clean line; the whole block when it is not known."""
+        body = None
+        try:
+            body = parse(code).body
+        except Refusal:
+            pass
+        words = body.words if isinstance(body, Block) else ()
+        found = [word.where for word in words if word.letter == letter]
+        if found:
+            return found[-1]
+        match = LABEL.match(code)
+        start = match.end() if match else 0
+        end = len(code.rstrip(COMMENT))
+        return (start if start < end else 0, max(end, 1))
+
+    # --- compiled lines
+
+    def words(self, line: int) -> tuple[bytes, array[float]]:
+        """Shape and values of a plain line; lines in sequence are scanned in ever larger batches."""
+        at = line - self.batch.first
+        if not 0 <= at < self.batch.count:
+            self.room = min(len(self.batch.shape_ends), self.room * 8) if at == self.batch.count else FIRST_BATCH
+            self.source.batch(line, self.room, self.batch)
+        return self.batch.words(line)
+
+    def statement(self, line: int) -> tuple[Statement | Branch | None, tuple[float, ...]]:
+        """The compiled line and its literal values; None where there is nothing to do. Raises Refusal."""
+        known = self.statements.get(line)
+        if known is None:
+            known = self.statements[line] = self.compile(line)
+        return known
+
+    def compile(self, line: int) -> tuple[Statement | Branch | None, tuple[float, ...]]:
+        text = self.clean(line)
+        self.check_encoding(line)
+        code = text.code.strip(COMMENT)
+        if not code:
+            return (comment_only(text), ()) if text.comments else (None, ())
+        if '"' in code or "<" in code or text.comments or MARK_START.match(code):
+            return self.fresh(text, text.code), ()
+        shape = LITERAL.sub("?", code)
+        values = tuple(map(float, LITERAL.findall(code)))
+        statement = self.shared.get(shape)
+        if statement is None or "n" in shape[:1] or "/" in shape[:1]:
+            if not values:
+                return self.fresh(text, code), ()
+            try:
+                made = self.fresh(text, shape)
+            except Refusal:
+                made = None
+            if not isinstance(made, Statement):  # say what is wrong with the line itself
+                return self.fresh(text, code), ()
+            self.shared[shape] = statement = made
+        return statement, values
+
+    def check_encoding(self, line: int) -> None:
+        raw = self.source.raw(line)
+        if not raw.isascii():
+            try:
+                raw.decode()
+            except UnicodeDecodeError as error:
+                where = (error.start, error.start + 1)
+                self.encoding.append((line, Refusal(F.INVALID_UTF8, where=where, byte=raw[error.start])))
+
+    def fresh(self, text: Clean, code: str) -> Statement | Branch | None:
+        parsed: Line = parse(code)
+        if parsed.deleted and self.block_delete:
+            return None
+        if parsed.body is None:
+            return comment_only(text) if text.comments else None
+        if isinstance(parsed.body, Mark):
+            condition = parsed.body.condition
+            return Branch(parsed.body, compile_value(condition, self.dialect) if condition else None)
+        return make(parsed.body, self.dialect, text.comments[-1] if text.comments else None)
+
+
+def comment_only(text: Clean) -> Statement:
+    nothing = lambda m, k: ((), ())  # noqa: E731
+    return Statement(Block(), (), (), False, nothing, (), None, None, {}, text.comments[-1])
+
+
+def make(block: Block, dialect: Dialect, comment: str | None = None) -> Statement:
+    """Compile a block. Raises Refusal where it is wrong whatever the values."""
+    codes: list[str] = ["call"] if block.call else []
+    kept = []
+    letters: list[str] = []
+    moving = False
+    for word in block.words:
+        if word.letter in "gm" and not (block.call and word.letter == "m"):
+            if isinstance(word.value, Number):
+                codes.append(code_name(word.letter, word.value.value))
+                continue
+            moving = True
+        elif word.letter in letters:
+            raise Refusal(F.REPEATED_WORD, where=word.where, word=word.letter.upper())
+        kept.append(word)
+        letters.append(word.letter)
+        if isinstance(word.value, Text) and not takes_text(codes, block, dialect):
+            raise Refusal(F.MISPLACED_STRING, where=word.where, word="P")
+    targets = []
+    for setting in block.settings:
+        if isinstance(setting.target, Variable):
+            targets.append((False, compile_value(setting.target.number, dialect)))
+        else:
+            assert isinstance(setting.target, Name)
+            targets.append((True, compile_name(setting.target, dialect)))
+    jump = None
+    if block.jump is not None and block.jump.target is not None:
+        jump = compile_value(block.jump.target, dialect)
+    return Statement(
+        block,
+        tuple(codes),
+        tuple(letters),
+        moving,
+        compile_block(block._replace(words=tuple(kept)), dialect),
+        tuple(targets),
+        compile_value(block.condition, dialect) if block.condition else None,
+        jump,
+        {},
+        comment,
+    )
+
+
+TEXT_CODES = frozenset({"m98", "g65", "g66", "call", "m109", "m120"})  # their P may be a string (AMB-LEX-5)
+
+
+def takes_text(codes: list[str], block: Block, dialect: Dialect) -> bool:
+    """Whether a string may be the P of this block."""
+    literal = {
+        code_name(word.letter, word.value.value)
+        for word in block.words
+        if word.letter in "gm" and isinstance(word.value, Number)
+    }
+    return bool(block.call) or bool(literal & TEXT_CODES) or any(
+        word.letter in "gm" and not isinstance(word.value, Number) for word in block.words
+    )

@@ -1,0 +1,186 @@
+"""One pass over the bytes of a program: where lines start, what class they are,
+and the words of those that are plain.
+
+A plain line holds nothing but words of one letter and a literal number
+(`N10 G1 X1.5 Y-2`), blanks and a `;` comment. Its shape is its letters, with the
+numbers of G and M kept: `g1xy`; the other numbers are its values. Lines of one
+shape mean the same, so whoever runs them understands each shape once.
+Everything else, a fault included, is OTHER and left to the general lane.
+"""
+
+from __future__ import annotations
+
+try:
+    import cython
+except ImportError:
+    from aircut.kernels import nocython as cython
+
+COMPILED = cython.compiled
+
+BLANK = 0
+PLAIN = 1
+OTHER = 2
+
+WORDS = 32  # at most in a plain line
+SHAPE = WORDS * 6  # bytes of a shape at most: letter, up to five of a code's number
+
+# Exact powers: a 15-digit integer divided by one is the correctly rounded number.
+POWERS = (1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15)
+DIGITS = 15
+
+
+@cython.boundscheck(False)
+@cython.wraparound(False)
+@cython.cdivision(True)
+def scan(
+    data: bytes,
+    at: cython.Py_ssize_t,
+    count: cython.Py_ssize_t,
+    starts: cython.longlong[::1],
+    classes: cython.uchar[::1],
+    first: cython.Py_ssize_t,
+    shapes: cython.uchar[::1],
+    shape_ends: cython.int[::1],
+    values: cython.double[::1],
+    value_ends: cython.int[::1],
+    powers: cython.double[::1],
+):
+    """Scan up to `count` lines from byte `at`; returns the byte after them.
+
+    starts, classes: of the whole file, written from index `first`.
+    shapes, values: the plain lines' shapes and values, end to end; line i of this
+    scan has shapes[shape_ends[i-1]:shape_ends[i]], likewise values.
+    Sizes: shapes count·SHAPE, values count·WORDS, the ends count. powers: POWERS.
+    """
+    size: cython.Py_ssize_t = len(data)
+    row: cython.Py_ssize_t = 0
+    shape_at: cython.Py_ssize_t = 0
+    value_at: cython.Py_ssize_t = 0
+    shape_from: cython.Py_ssize_t
+    value_from: cython.Py_ssize_t
+    kind: cython.int
+    c: cython.int
+    letter: cython.int
+    words: cython.int
+    digits: cython.int
+    decimals: cython.int
+    seen: cython.uint
+    bit: cython.uint
+    negative: cython.bint
+    signed: cython.bint
+    point: cython.bint
+    mantissa: cython.longlong
+    whole: cython.longlong
+    tenth: cython.longlong
+    scale: cython.longlong
+    number: cython.double
+
+    while row < count and at < size:
+        starts[first + row] = at
+        shape_from = shape_at
+        value_from = value_at
+        kind = BLANK
+        words = 0
+        seen = 0
+        while True:
+            if at >= size:
+                break
+            c = data[at]
+            if c == 10:
+                break
+            if c == 32 or c == 9 or c == 13:
+                at += 1
+                continue
+            if c == 59:  # ; comments out the rest
+                while at < size and data[at] != 10:
+                    at += 1
+                break
+            letter = c | 32
+            if c < 65 or letter < 97 or letter > 122 or c > 122 or letter == 111 or words == WORDS:
+                kind = OTHER
+                break
+            if letter == 110:  # N: first or nowhere
+                if kind != BLANK:
+                    kind = OTHER
+                    break
+            elif letter != 103 and letter != 109:
+                bit = 1 << (letter - 97)
+                if seen & bit:
+                    kind = OTHER
+                    break
+                seen |= bit
+            kind = PLAIN
+            words += 1
+            at += 1
+
+            negative = False
+            signed = False
+            point = False
+            mantissa = 0
+            digits = 0
+            decimals = 0
+            while at < size:
+                c = data[at]
+                if c >= 48 and c <= 57:
+                    digits += 1
+                    if digits > DIGITS:
+                        break
+                    mantissa = mantissa * 10 + (c - 48)
+                    if point:
+                        decimals += 1
+                elif c == 46 and not point:
+                    point = True
+                elif (c == 45 or c == 43) and digits == 0 and not point and not signed:
+                    signed = True
+                    negative = c == 45
+                elif c != 32 and c != 9 and c != 13:
+                    break
+                at += 1
+            if digits == 0 or digits > DIGITS:
+                kind = OTHER
+                break
+            if letter == 110:
+                if signed or point:
+                    kind = OTHER
+                    break
+                continue
+            shapes[shape_at] = letter
+            shape_at += 1
+            if letter == 103 or letter == 109:
+                while decimals > 1 and mantissa % 10 == 0:
+                    mantissa = mantissa // 10
+                    decimals -= 1
+                if negative or decimals > 1 or mantissa > 9999:
+                    kind = OTHER
+                    break
+                whole = mantissa
+                tenth = 0
+                if decimals:
+                    whole = mantissa // 10
+                    tenth = mantissa % 10
+                scale = 1
+                while scale * 10 <= whole:
+                    scale *= 10
+                while scale:
+                    shapes[shape_at] = 48 + whole // scale % 10
+                    shape_at += 1
+                    scale = scale // 10
+                if tenth:
+                    shapes[shape_at] = 46
+                    shapes[shape_at + 1] = 48 + tenth
+                    shape_at += 2
+            else:
+                number = mantissa / powers[decimals]
+                values[value_at] = -number if negative else number
+                value_at += 1
+        if kind == OTHER:
+            shape_at = shape_from
+            value_at = value_from
+            while at < size and data[at] != 10:
+                at += 1
+        at += 1
+        classes[first + row] = kind
+        shape_ends[row] = shape_at
+        value_ends[row] = value_at
+        row += 1
+    return at

@@ -1,0 +1,1 @@
+"""From a line of text to what it says: words, expressions, blocks, marks. Runs nothing."""

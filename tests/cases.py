@@ -1,0 +1,187 @@
+"""Reads conformance cases and compares runs with them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import msgspec
+
+import aircut
+from aircut.api import Result
+from aircut.diagnostics import Severity
+from aircut.interpreter.interpreter import Limits
+from aircut.machine import Machine, Tool, built_in
+
+ROOT = Path(__file__).parent.parent
+CONFORMANCE = ROOT / "conformance"
+MOTION = {"STRAIGHT_TRAVERSE", "STRAIGHT_FEED", "ARC_FEED", "STRAIGHT_PROBE"}
+OPENING = 6  # lines of a listing before the program's own
+TOLERANCE = 1e-4  # numbers of the listing
+PAIR = re.compile(r"(\w[\w ]*?):\s+(.*?)(?=\s{2,}\w+:\s|$)")
+COMMAND = re.compile(r"([A-Z][A-Z0-9_]*)\((.*?)\)(?=\s|$)")
+VALUE = re.compile(r"#(<[^>]+>|\d+)\s*=\s*(null|[-+.\dEeinfa]+)")
+NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+
+
+@dataclass
+class Case:
+    """One case file."""
+
+    path: Path
+    title: str
+    head: dict[str, str]
+    program: str
+    expected: list[str]
+    files: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def covers(self) -> list[str]:
+        return self.head.get("covers", "").split()
+
+
+def read(path: Path) -> Case:
+    """Read a case. Raises ValueError where it is not one."""
+    parts = re.split(r"^---[ \t]*\n", path.read_text("utf-8"), flags=re.MULTILINE)
+    if len(parts) != 3:
+        raise ValueError(f"{path}: a case has three parts between lines of ---")
+    lines = parts[0].strip().splitlines()
+    head: dict[str, str] = {}
+    files: dict[str, str] = {}
+    name = ""
+    for line in lines[1:]:
+        if line.startswith("file "):
+            name = line[5:].strip()
+            files[name] = ""
+        elif name:
+            files[name] += line + "\n"
+        else:
+            for match in PAIR.finditer(line):
+                head[match[1]] = f"{head.get(match[1], '')} {match[2].strip()}".strip()
+    expected = [line for line in parts[2].splitlines() if line.strip()]
+    return Case(path, lines[0], head, parts[1], expected, files)
+
+
+def all_cases() -> list[Path]:
+    return sorted(CONFORMANCE.rglob("*.case"))
+
+
+def machine(case: Case, folder: Path) -> Machine:
+    made = built_in(case.head.get("axes", "XYZ"))
+    if "error-on-missing-feed" in case.head.get("options", ""):
+        made.options = msgspec.structs.replace(made.options, missing_feed="error")
+    for pair in case.head.get("parameters", "").split():
+        number, value = pair.split("=")
+        made.variables[int(number)] = float(value)
+    if "tools" in case.head:
+        made.own_tools = True
+        made.tools = {}
+        for text in case.head["tools"].split():
+            number, _, data = text.partition(":")
+            fields = dict(pair.split("=") for pair in data.split(",") if pair)
+            kinds = {"slot": int, "type": int, "name": str}
+            tool = Tool(int(number), **{k: kinds.get(k, float)(v) for k, v in fields.items()})
+            made.tools[tool.id] = tool
+    if case.files:
+        for name, text in case.files.items():
+            (folder / name).write_text(text, "utf-8")
+        made.macros = (folder,)
+    return made
+
+
+def run(case: Case, folder: Path) -> Result:
+    options = case.head.get("options", "")
+    budget = re.search(r"max-blocks=(\d+)", options)
+    limits = Limits(blocks=int(budget[1])) if budget else Limits()
+    program = aircut.loads(case.program, case.head.get("dialect", "rosetta"), case.path.name)
+    return program.run(
+        machine(case, folder), keep_going=True, limits=limits,
+        block_delete="block-delete" in options, optional_stop="optional-stop" in options,
+    )  # fmt: skip
+
+
+def compare(case: Case, result: Result) -> list[str]:
+    """What differs from the case, in words; empty when nothing does."""
+    return [*compare_faults(case, result), *compare_listing(case, result), *compare_values(case, result)]
+
+
+def compare_faults(case: Case, result: Result) -> list[str]:
+    wanted = []
+    for at, line in enumerate(case.program.splitlines(), 1):
+        for kind, text in re.findall(r"\b(fault|warning):\s+([^;)]*)", line):
+            code, _, words = text.strip().partition(" ")
+            wanted.append((at, "error" if kind == "fault" else "warning", code, words.strip()))
+    wrong = []
+    given = [d for d in result.diagnostics if d.file == case.path.name]
+    left = list(given)
+    for at, severity, code, words in wanted:
+        match = next(
+            (d for d in left if (d.span.line, d.severity.value, d.code) == (at, severity, code) and words in d.message),
+            None,
+        )
+        if match is None:
+            found = "; ".join(str(d) for d in given if d.span.line == at) or "nothing"
+            wrong.append(f"line {at}: expected {severity} {code} {words!r}, got {found}")
+        else:
+            left.remove(match)
+    others = [d for d in result.diagnostics if d.file != case.path.name]
+    wrong += [f"unexpected: {d}" for d in [*left, *others] if d.severity is Severity.ERROR]
+    return wrong
+
+
+def listing(result: Result, show: str) -> list[str]:
+    lines = [line.rstrip("\n")[13:].lstrip() for line in result.canon()][OPENING:-2]
+    if show == "all":
+        return lines
+    names = MOTION if show == "motion" else set(show.replace(",", " ").split())
+    return [line for line in lines if line.split("(")[0] in names]
+
+
+def compare_listing(case: Case, result: Result) -> list[str]:
+    wanted = [line for line in case.expected if not line.lstrip().startswith("#")]
+    given = listing(result, case.head.get("show", "motion"))
+    wrong = [
+        f"command {at}: expected {w.strip()!r}, got {g!r}"
+        for at, (w, g) in enumerate(zip(wanted, given, strict=False), 1)
+        if not same(w, g)
+    ]
+    if len(wanted) != len(given):
+        more = [g for g in given[len(wanted) :]] or [w.strip() for w in wanted[len(given) :]]
+        wrong.append(f"expected {len(wanted)} commands, got {len(given)}; beyond the shorter: {more[:5]}")
+    return wrong
+
+
+def same(wanted: str, given: str) -> bool:
+    """Whether a listing line is as expected: same name and texts, same numbers but for zeros left out."""
+    w, g = COMMAND.search(wanted), COMMAND.search(given)
+    if w is None or g is None or w[1] != g[1]:
+        return False
+    if NUMBER.sub("0", w[2]) != NUMBER.sub("0", g[2]) and ('"' in g[2] or "CANON" in g[2]):
+        return False
+    a = [float(n) for n in NUMBER.findall(w[2])]
+    b = [float(n) for n in NUMBER.findall(g[2])]
+    a += [0.0] * (len(b) - len(a))
+    return len(a) == len(b) and all(abs(x - y) <= TOLERANCE for x, y in zip(a, b, strict=True))
+
+
+def compare_values(case: Case, result: Result) -> list[str]:
+    wrong = []
+    for line in case.expected:
+        match = VALUE.match(line.strip())
+        if match is None:
+            if line.lstrip().startswith("#"):
+                wrong.append(f"cannot read {line!r}")
+            continue
+        name = match[1]
+        if name.startswith("<"):
+            given = result.variables.get("".join(name[1:-1].lower().split()))
+        else:
+            given = result.system(int(name))
+        wanted = None if match[2] == "null" else float(match[2])
+        if given is None or wanted is None:
+            if given is not wanted:
+                wrong.append(f"#{name}: expected {match[2]}, got {given}")
+        elif abs(given - wanted) > 1e-6 * max(1.0, abs(wanted)) and given != wanted:
+            wrong.append(f"#{name}: expected {wanted}, got {given}")
+    return wrong
