@@ -1,0 +1,1 @@
+"""What can be made of a recording: pictures to look at, and files for other programs."""
