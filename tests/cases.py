@@ -147,7 +147,7 @@ def compare_listing(case: Case, result: Result) -> list[str]:
         if not same(w, g)
     ]
     if len(wanted) != len(given):
-        more = [g for g in given[len(wanted) :]] or [w.strip() for w in wanted[len(given) :]]
+        more = list(given[len(wanted) :]) or [w.strip() for w in wanted[len(given) :]]
         wrong.append(f"expected {len(wanted)} commands, got {len(given)}; beyond the shorter: {more[:5]}")
     return wrong
 

@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-import cases
 import pytest
+
+import cases
 
 
 @pytest.mark.parametrize("path", cases.all_cases(), ids=lambda p: str(p.relative_to(cases.CONFORMANCE))[:-5])

@@ -1,10 +1,10 @@
 """The Python API: load a program, check it, run it, look at what it does.
 
-    program = aircut.load("part.ngc")
-    for diagnostic in program.check():
-        print(diagnostic)
-    result = program.run()
-    print(result.extents, len(result.toolpath))
+program = aircut.load("part.ngc")
+for diagnostic in program.check():
+    print(diagnostic)
+result = program.run()
+print(result.extents, len(result.toolpath))
 """
 
 from __future__ import annotations

@@ -7,10 +7,13 @@ from importlib import import_module
 from aircut.interpreter.table import Dialect
 
 DIALECTS = {"rosetta": ("aircut.interpreter.rosetta", "ROSETTA")}
+LATER = ("linuxcnc",)
 
 
 def load(name: str) -> Dialect:
     """The tables of a dialect. Raises ValueError."""
+    if name in LATER:
+        raise ValueError(f"the dialect {name} is not supported yet: there is {', '.join(DIALECTS)}")
     try:
         module, attribute = DIALECTS[name]
     except KeyError:

@@ -75,7 +75,7 @@ class Source:
     def _scan(self, batch: Batch, first: int, count: int, at: int) -> int:
         batch.first = first
         batch.count = count
-        return scan.scan(
+        end: int = scan.scan(
             self.data,
             at,
             count,
@@ -88,6 +88,7 @@ class Source:
             batch.value_ends,
             POWERS,
         )
+        return end
 
     def batch(self, first: int, count: int, batch: Batch) -> Batch:
         """Fill a Batch with up to `count` lines from `first` on."""

@@ -141,7 +141,7 @@ class Toolpath:
 
         return np.vstack([np.asarray(self.start)[None, :], self.ends()[:-1]])[: len(self)]
 
-    def arcs(self) -> Iterator[tuple[int, NDArray[np.intp], NDArray, NDArray, NDArray]]:
+    def arcs(self) -> Iterator[tuple[int, NDArray[np.intp], NDArray[Any], NDArray[Any], NDArray[Any]]]:
         """The arcs of each plane: plane, their indices (k,), start, end and center (k, 3) along u, v, w, mm."""
         import numpy as np
 
@@ -161,7 +161,7 @@ class Toolpath:
         import numpy as np
 
         step = self.ends() - self.starts()
-        length = np.sqrt((step[:, :3] ** 2).sum(axis=1))
+        length: NDArray[np.float64] = np.sqrt((step[:, :3] ** 2).sum(axis=1))
         rotary = np.sqrt((step[:, 3:] ** 2).sum(axis=1))
         length = np.where(length > 1e-7, length, rotary)
         for _, which, start, end, center in self.arcs():

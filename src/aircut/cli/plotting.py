@@ -34,7 +34,7 @@ def plot(file: Path, output: Path, options: dict[str, Any]) -> int:
             from aircut.export import still
 
             with replacing(output, binary=True) as out:
-                still.draw(result.recording, out, output.suffix.lower()[1:], title)
+                still.draw(result.recording, out, "svg" if output.suffix.lower() == ".svg" else "png", title)
     except OSError as error:
         raise click.ClickException(f"cannot write {output}: {error.strerror}") from None
     return int(made.failed)

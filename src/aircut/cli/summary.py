@@ -54,7 +54,7 @@ def lines(result: Result, numbers: dict[str, Any]) -> list[tuple[str, str]]:
         ("path", f"{length['rapid']:.3f} mm rapid, {length['feed']:.3f} mm feed"),
         (
             "moves",
-            f"{counts['moves']:,}: {counts['rapids']:,} rapid, {counts['feeds']:,} straight feed, {counts['arcs']:,} arc",
+            "{moves:,}: {rapids:,} rapid, {feeds:,} straight feed, {arcs:,} arc".format(**counts),
         ),
         ("tools", ", ".join(f"T{tool}" for tool in numbers["tools"]) or "none"),
         ("lines", f"{counts['lines']:,}"),

@@ -7,11 +7,11 @@ Diagnostic that every face shows.
 
 from __future__ import annotations
 
-from enum import Enum
+from enum import StrEnum
 from typing import Any, NamedTuple
 
 
-class Severity(str, Enum):
+class Severity(StrEnum):
     """How bad it is: with an error the program is not fit to run."""
 
     ERROR = "error"
@@ -60,7 +60,12 @@ class Fault(NamedTuple):
     why: str = ""  # for the reference page: what it means and what to do
 
     def at(
-        self, file: str, span: Span, stack: tuple[Frame, ...] = (), severity: Severity | None = None, **values: Any
+        self,
+        file: str,
+        span: Span,
+        stack: tuple[Frame, ...] = (),
+        severity: Severity | None = None,
+        **values: Any,
     ) -> Diagnostic:
         """The Diagnostic of one occasion."""
         return Diagnostic(
@@ -81,9 +86,7 @@ class Refusal(Exception):
     where: (start, end) in the cleaned line when known.
     """
 
-    def __init__(
-        self, fault: Fault, letter: str = "", where: tuple[int, int] | None = None, **values: Any
-    ) -> None:
+    def __init__(self, fault: Fault, letter: str = "", where: tuple[int, int] | None = None, **values: Any) -> None:
         super().__init__(fault.code)
         self.fault = fault
         self.letter = letter

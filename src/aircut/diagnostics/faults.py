@@ -12,6 +12,7 @@ WARNING = Severity.WARNING
 
 CANNOT_READ = Fault("cannot-read", "cannot read the file: {reason}")
 EMPTY_PROGRAM = Fault("empty-program", "there is nothing to run in this file", severity=WARNING)
+NOT_UTF8 = Fault("not-utf8", "this is UTF-16 text", "save the program as UTF-8")
 INVALID_UTF8 = Fault(
     "invalid-utf8",
     "byte 0x{byte:02x} is not UTF-8; the line is read as Windows-1252",
@@ -20,7 +21,8 @@ INVALID_UTF8 = Fault(
 )
 ILLEGAL_CHARACTER = Fault("illegal-character", "{character} has no place here", "{hint}")
 LINE_TOO_LONG = Fault(
-    "line-too-long", "the line has {length:,} characters; the limit is {limit:,}",
+    "line-too-long",
+    "the line has {length:,} characters; the limit is {limit:,}",
     why="A limit against damaged files (`Limits.line`); NC programs have lines of some hundred characters at most.",
 )
 UNCLOSED_COMMENT = Fault("unclosed-comment", "the comment is not closed", "a comment ends with ) on its own line")
@@ -29,7 +31,9 @@ STRAY_PARENTHESIS = Fault("stray-parenthesis", ") without a ( before it")
 MISPLACED_COMMENT = Fault("misplaced-comment", "a comment inside a word", "put the comment before or after the word")
 UNCLOSED_STRING = Fault("unclosed-string", "the string is not closed", 'a string ends with " on the same line')
 MISPLACED_STRING = Fault(
-    "misplaced-string", "a string is no value for {word} here", "strings name a subroutine (P, O, SUB) or are a message"
+    "misplaced-string",
+    "a string is no value for {word} here",
+    "strings name a subroutine (P, O, SUB) or are a message",
 )
 MISPLACED_SLASH = Fault("misplaced-slash", "/ may only begin a line (block delete) or divide inside [ ]")
 MISPLACED_PERCENT = Fault("misplaced-percent", "% must stand alone on its line")
@@ -37,11 +41,14 @@ MISPLACED_PERCENT = Fault("misplaced-percent", "% must stand alone on its line")
 # --- Words and numbers
 
 BAD_NUMBER = Fault("bad-number", "{text} is no number")
-MISSING_VALUE = Fault("missing-value", "{word} has no value", "a word is a letter and a number, #variable or [expression]")
+MISSING_VALUE = Fault(
+    "missing-value", "{word} has no value", "a word is a letter and a number, #variable or [expression]"
+)
 REPEATED_WORD = Fault("repeated-word", "two {word} words in one block")
 UNKNOWN_CODE = Fault("unknown-code", "{code} is not a code of this language")
 NOT_SUPPORTED_YET = Fault(
-    "not-supported-yet", "{code} ({title}) is not supported yet",
+    "not-supported-yet",
+    "{code} ({title}) is not supported yet",
     "the language has this code, but this version of aircut cannot run it: what follows may be wrong",
 )
 UNSUPPORTED_CODE = Fault("unsupported-code", "the controller does not support {code}")
@@ -51,13 +58,17 @@ AXIS_CONFLICT = Fault("axis-conflict", "{first} and {second} both want the axis 
 AMBIGUOUS_WORD = Fault("ambiguous-word", "{word} could belong to {first} or to {second}", "use two blocks")
 UNUSED_WORD = Fault("unused-word", "nothing in this block uses {word}")
 NO_MOTION_MODE = Fault(
-    "no-motion-mode", "axis words, but no motion mode is active", "program G0, G1, G2 or G3 before or with them"
+    "no-motion-mode",
+    "axis words, but no motion mode is active",
+    "program G0, G1, G2 or G3 before or with them",
 )
 G80_AXES = Fault("g80-axes", "axis words with G80, which moves nothing")
 MISSING_WORD = Fault("missing-word", "{code} needs {word}", "{meaning}")
 MISSING_AXES = Fault("missing-axes", "{code} needs at least one axis word")
 AXIS_DISABLED = Fault(
-    "axis-disabled", "the machine has no {axis} axis", "give it one in machine.toml, or run with --axes {wanted}"
+    "axis-disabled",
+    "the machine has no {axis} axis",
+    "give it one in machine.toml, or run with --axes {wanted}",
 )
 BAD_VALUE = Fault("bad-value", "{word}{value:g} is out of range: {wanted}")
 NOT_INTEGER = Fault("not-integer", "{word}{value:g} must be a whole number")
@@ -72,7 +83,8 @@ UNCLOSED_BRACKET = Fault("unclosed-bracket", "[ without its ]")
 EXPRESSION_TOO_DEEP = Fault("expression-too-deep", "brackets nested more than {limit} deep")
 UNKNOWN_FUNCTION = Fault("unknown-function", "there is no function {name}")
 NULL_VALUE = Fault(
-    "null-value", "{what} is null (has no value): {operation}",
+    "null-value",
+    "{what} is null (has no value): {operation}",
     "a null variable may be copied and compared; give it a value, or test it with IF [{what} NE #0]",
 )
 NO_VARIABLE = Fault("no-variable", "there is no variable #{number}", "{hint}")
@@ -92,26 +104,34 @@ UNCLOSED_BLOCK = Fault("unclosed-block", "{what} is not closed by {closer}")
 ID_IN_USE = Fault("id-in-use", "id {id} is in use by the {opener} in line {line}")
 ELSE_TWICE = Fault("else-twice", "{what} after ELSE{id}", "ELSE is the last branch, and there is one")
 NOT_A_LOOP = Fault("not-a-loop", "BREAK{id}: no WHILE … DO{id} is open here")
-NO_TARGET = Fault("no-target", "GOTO {label}: no block N{label} in {where}")
+NO_TARGET = Fault("no-target", "GOTO {label}: no block N{label} in {place}")
 JUMP_INTO_BLOCK = Fault("jump-into-block", "GOTO {label} jumps into the block opened in line {line}")
 TOO_DEEP = Fault("too-deep", "more than {limit} {what} deep")
 BLOCK_BUDGET = Fault(
-    "block-budget", "stopped after {limit:,} repeated blocks; the loop is at lines {first} to {last}",
+    "block-budget",
+    "stopped after {limit:,} repeated blocks; the loop is at lines {first} to {last}",
     "if the program is meant to run that long, raise --max-blocks",
     why="Blocks run again by loops, GOTO, calls and M47 count; the limit stops programs that never end.",
 )
 ENDLESS_LOOP = Fault(
-    "endless-loop", "lines {first} to {last} repeat for ever: a whole pass changes nothing",
+    "endless-loop",
+    "lines {first} to {last} repeat for ever: a whole pass changes nothing",
     why="A pass through the loop left position, modes and variables exactly as a pass before did.",
 )
-OUTPUT_LIMIT = Fault("output-limit", "stopped after {limit:,} moves", "raise --max-moves if the program is meant to be that long")
+OUTPUT_LIMIT = Fault(
+    "output-limit",
+    "stopped after {limit:,} moves",
+    "raise --max-moves if the program is meant to be that long",
+)
 
 # --- Calls
 
 NO_SUBROUTINE = Fault("no-subroutine", "there is no subroutine {name}", "{hint}")
 DUPLICATE_SUBROUTINE = Fault("duplicate-subroutine", "subroutine {name} is defined in line {line} already")
 NO_SUBROUTINE_END = Fault("no-subroutine-end", "subroutine {name} runs to the end without M99, ENDSUB or RETURN")
-BAD_FILE_NAME = Fault("bad-file-name", "{name} is no macro file name", "macros lie in the macros folders, without a path")
+BAD_FILE_NAME = Fault(
+    "bad-file-name", "{name} is no macro file name", "macros lie in the macros folders, without a path"
+)
 
 # --- Motion, feed, tools
 
@@ -122,16 +142,20 @@ ARC_RADIUS_MISMATCH = Fault(
 )
 ARC_NO_CENTER = Fault("arc-no-center", "{code} needs {words} or R")
 ARC_ZERO_RADIUS = Fault("arc-zero-radius", "the arc's center is its own start: the radius is zero")
+ARC_TOO_LARGE = Fault("arc-too-large", "the arc's radius is beyond all machines")
 ARC_CENTER_AND_RADIUS = Fault("arc-center-and-radius", "R and center words in one arc", "give either R or I, J, K")
 ARC_RADIUS_TOO_SMALL = Fault(
-    "arc-radius-too-small", "R{radius:g} cannot reach: half the distance to the end point is {half:.4f} {unit}"
+    "arc-radius-too-small",
+    "R{radius:g} cannot reach: half the distance to the end point is {half:.4f} {unit}",
 )
 ARC_SAME_END = Fault("arc-same-end", "an arc by R must end elsewhere than it starts", "use I, J, K for a full circle")
 ARC_NO_END = Fault("arc-no-end", "an arc by R needs an axis word of its plane")
 ARC_WRONG_CENTER = Fault("arc-wrong-center", "{word} is no center word in the {plane} plane")
 NO_FEED = Fault(
-    "no-feed", "a feed move, and no F yet: {feed:g} mm/min is used",
-    "program F; machine.toml can make this an error (missing_feed = \"error\")", WARNING,
+    "no-feed",
+    "a feed move, and no F yet: {feed:g} mm/min is used",
+    'program F; machine.toml can make this an error (missing_feed = "error")',
+    WARNING,
 )
 MISSING_FEED = Fault("missing-feed", "a feed move, and no F is active", "program F before or with the move")
 INVERSE_TIME_FEED = Fault("inverse-time-feed", "under G93 each feed move needs its own F above zero")
@@ -141,11 +165,7 @@ UNKNOWN_TOOL = Fault(
 SPINDLE_LIMIT = Fault(
     "spindle-limit", "S{speed:g} is above the spindle's maximum: {limit:g} rpm is used", severity=WARNING
 )
-NO_PROGRAM_END = Fault(
-    "no-program-end", "the program has no M2 or M30: it ends here without a reset", severity=WARNING
-)
+NO_PROGRAM_END = Fault("no-program-end", "the program has no M2 or M30: it ends here without a reset", severity=WARNING)
 UNKNOWN_PARAMETER = Fault("unknown-parameter", "G10 L{l:g} is not a code of this language")
 
-FAULTS: dict[str, Fault] = {
-    fault.code: fault for fault in list(globals().values()) if isinstance(fault, Fault)
-}
+FAULTS: dict[str, Fault] = {fault.code: fault for fault in list(globals().values()) if isinstance(fault, Fault)}

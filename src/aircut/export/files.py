@@ -17,7 +17,8 @@ def replacing(path: Path, binary: bool = False) -> Iterator[IO[Any]]:
     """
     temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
-        with open(temporary, "wb" if binary else "w", **({} if binary else {"encoding": "utf-8", "newline": ""})) as file:
+        file = open(temporary, "wb") if binary else open(temporary, "w", encoding="utf-8", newline="")  # noqa: SIM115
+        with file:
             yield file
         os.replace(temporary, path)
     finally:

@@ -9,10 +9,13 @@ The functions on numbers serve the interpreter, those on arrays everyone else.
 from __future__ import annotations
 
 from math import atan2, hypot, sqrt, tau
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
 
 FULL_CIRCLE_FUZZ = 1e-6  # radians: an arc that sweeps less than this goes all the way round
 
@@ -55,7 +58,7 @@ def center_of_radius(
     return (start[0] + end[0]) / 2 - rise * along[1], (start[1] + end[1]) / 2 + rise * along[0]
 
 
-def sweeps(start: NDArray, end: NDArray, center: NDArray, turns: NDArray) -> NDArray:
+def sweeps(start: Array, end: Array, center: Array, turns: NDArray[Any]) -> Array:
     """Signed angles swept, (n,) radians. start, end, center: (n, 2) mm; turns: (n,)."""
     import numpy as np
 
@@ -64,18 +67,20 @@ def sweeps(start: NDArray, end: NDArray, center: NDArray, turns: NDArray) -> NDA
     sign = np.where(turns > 0, 1.0, -1.0)
     angle = np.mod(sign * angle, tau)
     angle = np.where(angle < FULL_CIRCLE_FUZZ, angle + tau, angle)
-    return sign * (angle + tau * (np.abs(turns) - 1))
+    swept: Array = sign * (angle + tau * (np.abs(turns) - 1))
+    return swept
 
 
-def lengths(start: NDArray, end: NDArray, rise: NDArray, center: NDArray, turns: NDArray) -> NDArray:
+def lengths(start: Array, end: Array, rise: Array, center: Array, turns: NDArray[Any]) -> Array:
     """Path lengths, (n,) mm; the radius is the mean of both ends'. rise: (n,) mm along the normal."""
     import numpy as np
 
     radius = (np.hypot(*(start - center).T) + np.hypot(*(end - center).T)) / 2
-    return np.hypot(radius * sweeps(start, end, center, turns), rise)
+    length: Array = np.hypot(radius * sweeps(start, end, center, turns), rise)
+    return length
 
 
-def bounds(start: NDArray, end: NDArray, center: NDArray, turns: NDArray) -> tuple[NDArray, NDArray]:
+def bounds(start: Array, end: Array, center: Array, turns: NDArray[Any]) -> tuple[Array, Array]:
     """Lowest and highest u and v of each arc: two arrays (n, 2), mm."""
     import numpy as np
 

@@ -48,9 +48,7 @@ def code_name(letter: str, value: float) -> str:
     return f"{letter}{value:g}"
 
 
-def arrange(
-    rows: Sequence[Code], letters: Sequence[str], motion: Code | None, dialect: Dialect, axes: str
-) -> Steps:
+def arrange(rows: Sequence[Code], letters: Sequence[str], motion: Code | None, dialect: Dialect, axes: str) -> Steps:
     """The steps of a block with these codes and word letters. Raises Refusal.
 
     motion: the motion mode in force. axes: letters of the axes that the machine has.

@@ -72,7 +72,7 @@ class Writer:
             case Number():
                 return repr(node.value), 0
             case Parameter():
-                return f"k[{node.index}]", 0
+                return f"k[{node.nth}]", 0
             case Text():
                 return repr(node.text), 0
             case Variable():
@@ -83,13 +83,7 @@ class Writer:
                 text, depth = self.checked(node.operand)
                 return self.step(f"(-{text})", depth + 1)
             case Binary():
-                if node.operator.inline:
-                    left, a = self.expression(node.left)
-                    right, b = self.expression(node.right)
-                    return self.step(f"({left} {node.operator.name} {right})", max(a, b) + 1)
-                left, a = self.checked(node.left)
-                right, b = self.checked(node.right)
-                return self.step(f"{node.operator.run.__name__}({left}, {right})", max(a, b) + 1)
+                return self.chain(node)
             case Application():
                 if node.function.arguments == "name":
                     assert isinstance(node.arguments[0], Name)
@@ -98,6 +92,25 @@ class Writer:
                 inner = ", ".join(text for text, _ in parts)
                 return self.step(f"f_{node.function.name}({inner})", max(depth for _, depth in parts) + 1)
         raise AssertionError(node)
+
+    def chain(self, node: Binary) -> tuple[str, int]:
+        """A chain of operators: its left side is followed down in a loop, for it may be long."""
+        nodes = [node]
+        while isinstance(nodes[-1].left, Binary):
+            nodes.append(nodes[-1].left)
+        text, depth = self.checked(nodes[-1].left)
+        while nodes:
+            link = nodes.pop()
+            operator = link.operator
+            if operator.inline:
+                right, other = self.expression(link.right)
+                text, depth = self.step(f"({text} {operator.name} {right})", max(depth, other) + 1)
+                if nodes and not nodes[-1].operator.inline:
+                    text = f"finite({text})"
+            else:
+                right, other = self.checked(link.right)
+                text, depth = self.step(f"{operator.run.__name__}({text}, {right})", max(depth, other) + 1)
+        return text, depth
 
     def variable(self, node: Variable) -> tuple[str, int]:
         if isinstance(node.number, Number) and node.number.value == int(node.number.value):
@@ -178,7 +191,7 @@ def walk(node: Expression | Text, m: State, k: Values = ()) -> Any:
             case Number():
                 return node.value
             case Parameter():
-                return k[node.index]
+                return k[node.nth]
             case Text():
                 return node.text
             case Variable():
@@ -188,12 +201,7 @@ def walk(node: Expression | Text, m: State, k: Values = ()) -> Any:
             case Negation():
                 return -solid(node.operand, m, k, "behind a minus sign")
             case Binary():
-                if node.operator.null:
-                    return node.operator.run(walk(node.left, m, k), walk(node.right, m, k))
-                what = f"as an operand of {node.operator.name.upper()}"
-                left = solid(node.left, m, k, what)
-                right = solid(node.right, m, k, what)
-                return finite(node.operator.run(left, right))
+                return walk_chain(node, m, k)
             case Application():
                 if node.function.arguments == "name":
                     assert isinstance(node.arguments[0], Name)
@@ -206,12 +214,38 @@ def walk(node: Expression | Text, m: State, k: Values = ()) -> Any:
     raise AssertionError(node)
 
 
-def solid(node: Expression, m: State, k: Values, operation: str) -> float:
-    """Value of an expression that may not be null. Raises Refusal."""
-    value: float | None = walk(node, m, k)
+def walk_chain(node: Binary, m: State, k: Values) -> float:
+    """Value of a chain of operators; its left side may be long. Raises Refusal."""
+    nodes = [node]
+    while isinstance(nodes[-1].left, Binary):
+        nodes.append(nodes[-1].left)
+    value = walk(nodes[-1].left, m, k)
+    while nodes:
+        link = nodes.pop()
+        right = walk(link.right, m, k)
+        if not link.operator.null:
+            what = f"as an operand of {link.operator.name.upper()}"
+            known(value, link.left, m, what)
+            known(right, link.right, m, what)
+        try:
+            value = finite(link.operator.run(value, right))
+        except Refusal as refusal:
+            refusal.where = refusal.where or link.where
+            raise
+    assert value is not None
+    return float(value)
+
+
+def known(value: float | None, node: Expression, m: State, operation: str) -> float:
+    """The value of a node, refused when it is null."""
     if value is None:
         raise Refusal(F.NULL_VALUE, where=node.where, what=title(node, m), operation=operation)
     return value
+
+
+def solid(node: Expression, m: State, k: Values, operation: str) -> float:
+    """Value of an expression that may not be null. Raises Refusal."""
+    return known(walk(node, m, k), node, m, operation)
 
 
 def title(node: Expression | Text, m: State) -> str:

@@ -30,6 +30,7 @@ DEEPEST_CALL = 100
 WATCH = 64  # passes through a loop that are compared with one before
 EVALUATION = (*FAILURES, Refusal)
 FATAL = (F.BLOCK_BUDGET, F.ENDLESS_LOOP)
+UTF16 = (b"\xff\xfe", b"\xfe\xff")  # byte order marks
 SHAPE_WORD = re.compile(rb"([a-z])([\d.]*)")
 
 
@@ -72,8 +73,8 @@ class Stopped(Exception):
 class Interpreter:
     """Runs one program on one machine. Iterate `run()`; then read `state` and `diagnostics`."""
 
-    def __init__(self, source: Source, dialect: Dialect, machine: Machine, settings: Settings = Settings()) -> None:
-        self.settings = settings
+    def __init__(self, source: Source, dialect: Dialect, machine: Machine, settings: Settings | None = None) -> None:
+        self.settings = settings = settings or Settings()
         self.dialect = dialect
         self.machine = machine
         self.diagnostics: list[Diagnostic] = []
@@ -122,7 +123,9 @@ class Interpreter:
         m = self.state
         starting.begin(m)
         self.check_structure(self.unit)
-        if not len(self.unit.source) or not any(self.unit.source.classes):
+        if self.unit.source.data.startswith(UTF16):
+            self.tell(F.NOT_UTF8.at(self.unit.source.name, Span(1, 1, 2)))
+        elif not len(self.unit.source) or not any(self.unit.source.classes):
             self.tell(F.EMPTY_PROGRAM.at(self.unit.source.name, Span()))
         elif self.settings.keep_going or not self.failed:
             try:
@@ -169,7 +172,10 @@ class Interpreter:
             rows = [find(name, self.dialect, name[0]) for name in codes]
             arrange(rows, letters, motion, self.dialect, self.state.axes + "xyzabc")
         except Refusal as refusal:
-            if refusal.fault not in (F.UNUSED_WORD, F.NOT_SUPPORTED_YET):  # these depend on the modes in force
+            if refusal.fault not in (
+                F.UNUSED_WORD,
+                F.NOT_SUPPORTED_YET,
+            ):  # these depend on the modes in force
                 self.tell_refusal(refusal, unit, line, stack=False)
 
     def blocks(self) -> Iterator[Chunk]:
@@ -218,6 +224,7 @@ class Interpreter:
                 except Refusal as refusal:
                     self.tell_refusal(refusal, self.unit, self.line)
                     if not self.settings.keep_going or refusal.fault in FATAL:
+                        out.line = 0
                         raise Stopped from None
                     self.recover(refusal)
                     line = self.line + 1
@@ -285,12 +292,20 @@ class Interpreter:
                 if truth == 0.0:
                     return line + 1
             values, results = statement.values(m, literals)
-            targets = [(named, target(m, literals)) for named, target in statement.targets]
+            targets = [
+                (kind, target(m, literals) if kind in ("named", "computed") else target)
+                for kind, target in statement.targets
+            ]
             label = statement.jump(m, literals) if statement.jump else None
         except EVALUATION as failure:
             self.explain(unit, line, failure)
-        for (named, target), value in zip(targets, results, strict=True):
-            self.assign(unit, line, named, target, value)
+        for (kind, target), value in zip(targets, results):  # noqa: B905  one value a target by construction
+            if kind == "local":
+                m.locals[target] = value
+            elif kind == "numbered":
+                m.numbered[target] = value
+            else:
+                self.assign(unit, line, kind == "named", target, value)
         if statement.comment is not None:
             text = statement.comment.lstrip()
             if text or statement.comment:
@@ -389,9 +404,9 @@ class Interpreter:
         structure = unit.structure
         while True:
             line = structure.otherwise.get(line, line + 1)
-            unit.seen[line : line + 1] = b"\1" if line < len(unit.seen) else b""
-            if unit.source.classes[line : line + 1] != bytes([scan.OTHER]):
+            if line >= len(unit.source) or unit.source.classes[line] != scan.OTHER:
                 return line
+            unit.seen[line] = 1
             known = unit.statement(line)[0]
             if not isinstance(known, Branch) or known.mark.kind in ("if", "while"):
                 return line
@@ -415,7 +430,7 @@ class Interpreter:
             if label is None:
                 self.explain(unit, line, TypeError("null label"))
             if label != round(label) or label < 0:
-                raise Refusal(F.NO_TARGET, label=f"{label:g}", where=unit.structure.routine(line).title())
+                raise Refusal(F.NO_TARGET, label=f"{label:g}", place=unit.structure.routine(line).title())
             target = unit.structure.target(line, int(label), unit.source, self.settings.block_delete)
         except Refusal as refusal:
             refusal.where = refusal.where or self.jump_place(unit, line)

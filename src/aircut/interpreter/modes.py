@@ -12,6 +12,8 @@ from aircut.diagnostics import faults as F
 from aircut.interpreter.state import INCH, PLANES, State, out_of_range, whole
 from aircut.interpreter.table import Code, Group, Order, Words
 
+FASTEST = 1e9  # program units a minute
+
 
 def comment(m: State, text: str) -> None:
     m.out.event("COMMENT", f"interpreter: {text}")
@@ -32,6 +34,8 @@ def feed_word(m: State, w: Words) -> None:
     value = w["f"]
     if value < 0.0:
         raise out_of_range(w, "f", "feed rates are not negative")
+    if value > FASTEST:
+        raise out_of_range(w, "f", "no machine is that fast")
     if m.inverse_time:
         m.feed = value
         return

@@ -26,6 +26,7 @@ MISMATCH = 0.0254  # mm by which an arc's two radii may differ, or
 MISMATCH_SHARE = 0.001  # this part of the larger
 RADIUS_SLACK = 1e-4  # part of the chord by which an R may be too short
 SLOWEST = 0.1  # program units a minute: a lower inverse-time feed is told as this
+FAR = 1e9  # mm, degrees, mm/min: nothing reasonable is beyond
 TINY = 1e-7  # mm: shorter linear moves count as rotary ones (canonical listing, section 14)
 
 
@@ -53,6 +54,15 @@ def target(m: State, w: Words) -> list[float] | None:
             if axis in w:
                 named = True
                 goal[i] += w[axis] * (unit if i < 3 else 1.0)
+    if max(goal) > FAR or min(goal) < -FAR:
+        axis = max((abs(goal[i]), axis) for i, axis in NUMBERED_AXES)[1]
+        raise Refusal(
+            F.BAD_VALUE,
+            axis,
+            word=axis.upper(),
+            value=w.get(axis, 0.0),
+            wanted="it leads beyond all machines",
+        )
     return goal if named else None
 
 
@@ -202,6 +212,8 @@ def check_radii(m: State, here: tuple[float, float], there: tuple[float, float],
     """Refuse arcs whose ends lie on different circles (AMB-COD-6)."""
     first = hypot(here[0] - center[0], here[1] - center[1])
     last = hypot(there[0] - center[0], there[1] - center[1])
+    if not first < FAR:
+        raise Refusal(F.ARC_TOO_LARGE)
     if first < TINY:
         raise Refusal(F.ARC_ZERO_RADIUS)
     gap = abs(first - last)
@@ -222,6 +234,8 @@ def center_by_radius(
     chord = hypot(there[0] - here[0], there[1] - here[1])
     if chord < TINY:
         raise Refusal(F.ARC_SAME_END, "r")
+    if abs(w["r"]) * m.unit > FAR:
+        raise Refusal(F.ARC_TOO_LARGE, "r")
     center = arcs.center_of_radius(here, there, w["r"] * m.unit, turn, RADIUS_SLACK * chord)
     if center is None:
         unit = "in" if m.unit == INCH else "mm"

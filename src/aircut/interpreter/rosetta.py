@@ -84,8 +84,38 @@ CODES = (*motion.CODES, *modes.CODES, *offsets.CODES, *auxiliary.CODES, *calls.C
 
 #: Named in the documents, or known from relatives of the language, but not in it (AMB-COD-2, AMB-CYC-3).
 UNSUPPORTED = frozenset(
-    "g5 g5.1 g5.2 g5.3 g7 g8 g17.1 g18.1 g19.1 g33 g33.1 g70 g71 g72 g74 g76 g84 g87 g95 g96 g97 "
-    "m19 m52 m53 m64 m65 m70 m71 m72 m73".split()
+    [
+        "g5",
+        "g5.1",
+        "g5.2",
+        "g5.3",
+        "g7",
+        "g8",
+        "g17.1",
+        "g18.1",
+        "g19.1",
+        "g33",
+        "g33.1",
+        "g70",
+        "g71",
+        "g72",
+        "g74",
+        "g76",
+        "g84",
+        "g87",
+        "g95",
+        "g96",
+        "g97",
+        "m19",
+        "m52",
+        "m53",
+        "m64",
+        "m65",
+        "m70",
+        "m71",
+        "m72",
+        "m73",
+    ]
 )
 
 RANGES = (
@@ -117,7 +147,22 @@ ROSETTA = Dialect(
     ranges=RANGES,
     system=SYSTEM,
     named={row.name: row for row in NAMED},
-    start=("g15", "g17", "g21", "g40", "g49", "g50", "g54", "g64", "g69", "g80", "g90", "g91.1", "g94", "g98"),
+    start=(
+        "g15",
+        "g17",
+        "g21",
+        "g40",
+        "g49",
+        "g50",
+        "g54",
+        "g64",
+        "g69",
+        "g80",
+        "g90",
+        "g91.1",
+        "g94",
+        "g98",
+    ),
     local_underscore=True,
     settings=SETTINGS,
     no_variable="variables are #0 to #33, #100 to #4999, #5000 to #5999 (system) and #6000 to #6999",

@@ -116,7 +116,8 @@ class State:
                 if system.unit == "length" and value is not None:
                     return value / self.unit
                 return value
-        return self.unlisted(number)
+        self.unlisted(number)
+        return None
 
     def number_of(self, index: float | None) -> int:
         if index is None:
@@ -190,7 +191,7 @@ class State:
 def frozen(value: Any) -> Any:
     """A copy that later changes do not touch."""
     if isinstance(value, list):
-        return tuple(frozen(item) if isinstance(item, list) else item for item in value)
+        return tuple(map(tuple, value)) if value and isinstance(value[0], list) else tuple(value)
     return dict(value) if isinstance(value, dict) else value
 
 
@@ -199,10 +200,10 @@ def whole(words: Mapping[str, Any], letter: str) -> int:
     value = words[letter]
     nearest = round(value) if abs(value) < 1e15 else 0
     if abs(value - nearest) > EQUAL:
-        raise Refusal(F.NOT_INTEGER, letter, value=value)
+        raise Refusal(F.NOT_INTEGER, letter, word=letter.upper(), value=value)
     return nearest
 
 
 def out_of_range(words: Mapping[str, Any], letter: str, wanted: str) -> Refusal:
     """The Refusal of a word's value."""
-    return Refusal(F.BAD_VALUE, letter, value=words[letter], wanted=wanted)
+    return Refusal(F.BAD_VALUE, letter, word=letter.upper(), value=words[letter], wanted=wanted)

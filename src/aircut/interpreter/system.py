@@ -7,6 +7,7 @@ Sources: 000 and 004 section 2.1; decisions section 4.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
@@ -18,7 +19,7 @@ Read = Callable[[State, int], float | None]
 
 def null(m: State, i: int) -> None:
     """Before the first event that fills it (AMB-VAR-16)."""
-    return None
+    return
 
 
 def zero(m: State, i: int) -> float:
@@ -138,8 +139,7 @@ SYSTEM = (
     *(
         row
         for system in range(WORK_SYSTEMS)
-        for row in axes(5221 + 20 * system, f"Origin of work system {system + 1}",
-                        lambda axis, system=system: origin(system, axis))
+        for row in axes(5221 + 20 * system, f"Origin of work system {system + 1}", partial(origin, system))
     ),
     one(5400, "Tool in the spindle", attribute("tool")),
     SystemVariable(5401, 5403, "Offsets X Y Z of the tool in the spindle", tool_data("x", "y", "z"), "length"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 FIRST_BATCH = 16  # lines scanned when the program has jumped
 #: Literal numbers that do not decide what a line means, so that lines differing in them share a shape.
 LITERAL = re.compile(r"(?<=[abcdefhijklpqrstuvwxyz=\[+\-*/,])(\d+\.?\d*|\.\d+)(?![\d.])")
+INFINITE = float("inf")
 LABEL = re.compile(r"(?:n\d+)?\x01*")
 MARK_START = re.compile(r"\x01*(?:n\d+)?\x01*(?:if\[|elif|else|end\d|while|sub[\d\"]|o[\d\"])")
 
@@ -46,7 +48,7 @@ class Statement(NamedTuple):
     letters: tuple[str, ...]  # of the words that are not literal codes, in order
     moving: bool  # among the letters are codes whose number is computed
     values: Callable[..., Any]
-    targets: tuple[tuple[bool, Any], ...]  # of the settings: (named, its number, name, or function of it)
+    targets: tuple[tuple[str, Any], ...]  # of the settings: where to, and the number or the function of it
     condition: Callable[..., Any] | None
     jump: Callable[..., Any] | None  # the label of a GOTO
     steps: dict[Any, Any]
@@ -97,7 +99,7 @@ class Unit:
         end = len(classes)
         at = self.source.data.find(b"%")
         while at >= 0:
-            line = structure.bisect_right(self.source.starts, at) - 1
+            line = bisect_right(self.source.starts, at) - 1
             if self.source.raw(line).strip() == b"%":
                 if line != first:
                     return (first + 1 if self.percent else first), line
@@ -172,10 +174,10 @@ class Unit:
         code = text.code.strip(COMMENT)
         if not code:
             return (comment_only(text), ()) if text.comments else (None, ())
-        if '"' in code or "<" in code or text.comments or MARK_START.match(code):
+        values = tuple(map(float, LITERAL.findall(code)))
+        if '"' in code or "<" in code or text.comments or MARK_START.match(code) or INFINITE in values:
             return self.fresh(text, text.code), ()
         shape = LITERAL.sub("?", code)
-        values = tuple(map(float, LITERAL.findall(code)))
         statement = self.shared.get(shape)
         if statement is None or "n" in shape[:1] or "/" in shape[:1]:
             if not values:
@@ -233,13 +235,7 @@ def make(block: Block, dialect: Dialect, comment: str | None = None) -> Statemen
         letters.append(word.letter)
         if isinstance(word.value, Text) and not takes_text(codes, block, dialect):
             raise Refusal(F.MISPLACED_STRING, where=word.where, word="P")
-    targets = []
-    for setting in block.settings:
-        if isinstance(setting.target, Variable):
-            targets.append((False, compile_value(setting.target.number, dialect)))
-        else:
-            assert isinstance(setting.target, Name)
-            targets.append((True, compile_name(setting.target, dialect)))
+    targets = [target_of(setting.target, dialect) for setting in block.settings]
     jump = None
     if block.jump is not None and block.jump.target is not None:
         jump = compile_value(block.jump.target, dialect)
@@ -257,6 +253,19 @@ def make(block: Block, dialect: Dialect, comment: str | None = None) -> Statemen
     )
 
 
+def target_of(target: Variable | Name, dialect: Dialect) -> tuple[str, Any]:
+    """Where a setting goes: "local" or "numbered" and the number, or "computed" or "named" and a function."""
+    if isinstance(target, Name):
+        return "named", compile_name(target, dialect)
+    if isinstance(target.number, Number) and target.number.value == int(target.number.value):
+        number = int(target.number.value)
+        if 1 <= number <= 33:
+            return "local", number
+        if any(row.first <= number <= row.last and row.writable for row in dialect.ranges):
+            return "numbered", number
+    return "computed", compile_value(target.number, dialect)
+
+
 TEXT_CODES = frozenset({"m98", "g65", "g66", "call", "m109", "m120"})  # their P may be a string (AMB-LEX-5)
 
 
@@ -267,6 +276,8 @@ def takes_text(codes: list[str], block: Block, dialect: Dialect) -> bool:
         for word in block.words
         if word.letter in "gm" and isinstance(word.value, Number)
     }
-    return bool(block.call) or bool(literal & TEXT_CODES) or any(
-        word.letter in "gm" and not isinstance(word.value, Number) for word in block.words
+    return (
+        bool(block.call)
+        or bool(literal & TEXT_CODES)
+        or any(word.letter in "gm" and not isinstance(word.value, Number) for word in block.words)
     )

@@ -17,7 +17,16 @@ from typing import NamedTuple
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
-from aircut.language.expressions import Expression, Name, Number, Parser, Text, Variable, Where
+from aircut.language.expressions import (
+    Expression,
+    Name,
+    Number,
+    Parser,
+    Text,
+    Variable,
+    Where,
+    illegal_character,
+)
 from aircut.language.text import COMMENT
 
 LETTERS = "abcdefghijklmpqrstuvwxyz@^"  # of words; n and o are not among them
@@ -210,11 +219,8 @@ class LineParser(Parser):
             return Refusal(F.MISPLACED_SLASH, where=where)
         if character == "%":
             return Refusal(F.MISPLACED_PERCENT, where=where)
-        name = f"“{character}”" if character.isprintable() else f"character {ord(character):#04x}"
         hint = "a subroutine is declared at the start of a line" if character == "o" else ""
-        if character == "\0":
-            hint = "is this a text file? UTF-16 text must be saved as UTF-8"
-        return Refusal(F.ILLEGAL_CHARACTER, where=where, character=name, hint=hint)
+        return illegal_character(character, where, hint)
 
     def word(self) -> Word:
         start = self.at

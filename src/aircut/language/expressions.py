@@ -33,7 +33,7 @@ class Number(NamedTuple):
 class Parameter(NamedTuple):
     """A literal number of a line of which only the shape is known: the n-th of the line's values."""
 
-    index: int
+    nth: int
     where: Where
 
 
@@ -93,6 +93,12 @@ FUNCTION_ROWS = {function.name: function for function in FUNCTIONS}
 OPERATOR_ROWS = {operator.name: operator for operator in OPERATORS}
 
 
+def illegal_character(character: str, where: Where, hint: str = "") -> Refusal:
+    """The Refusal of a character that has no place where it stands."""
+    name = f"“{character}”" if character.isprintable() else f"character {ord(character):#04x}"
+    return Refusal(F.ILLEGAL_CHARACTER, where=where, character=name, hint=hint)
+
+
 class Parser:
     """Reads values and expressions from a clean line, from `at` on."""
 
@@ -114,6 +120,8 @@ class Parser:
         here = (self.at, min(self.at + 1, len(self.code)))
         if self.code[self.at : self.at + 1] == COMMENT:
             return Refusal(F.MISPLACED_COMMENT, where=here)
+        if not " " <= self.code[self.at : self.at + 1] <= "~" and self.at < len(self.code):
+            return illegal_character(self.code[self.at], here)
         return Refusal(F.EXPECTED, where=here, wanted=wanted, found=self.found(), hint=hint)
 
     def take(self, text: str) -> bool:

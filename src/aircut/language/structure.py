@@ -50,7 +50,7 @@ class Structure:
     """Where to go from each mark."""
 
     routines: dict[str, Routine] = field(default_factory=dict)
-    main: Routine = Routine("", -1, 0, 0)
+    main: Routine = field(default_factory=lambda: Routine("", -1, 0, 0))
     #: if, elif: where to go when the condition is false. while: the line after its END. else: not used.
     otherwise: dict[int, int] = field(default_factory=dict)
     #: elif, else: the line after the END, for who comes from the branch above. end of a while: the WHILE.
@@ -85,7 +85,7 @@ class Structure:
         routine = self.routine(line)
         inside = [at for at in self.labels.get(label, ()) if routine.first <= at < routine.end]
         if not inside:
-            raise Refusal(F.NO_TARGET, label=label, where=routine.title())
+            raise Refusal(F.NO_TARGET, label=label, place=routine.title())
         at = next((at for at in inside if at > line), inside[0])
         here = self.around(line)
         for block in self.around(at):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from aircut.diagnostics import Refusal
+from aircut.diagnostics import Fault, Refusal
 from aircut.diagnostics import faults as F
 
 COMMENT = "\x01"  # stands where a comment stood: separates words, fits into none
@@ -47,7 +47,7 @@ def clean(text: str) -> Clean:
     return Clean("".join(code), tuple(comments))
 
 
-def stray_fault(text: str, at: int) -> F.Fault:
+def stray_fault(text: str, at: int) -> Fault:
     """What is wrong with a delimiter that opens or closes nothing."""
     if text[at] == '"':
         return F.UNCLOSED_STRING

@@ -1,0 +1,5 @@
+"""`python -m aircut` is the command `aircut`."""
+
+from aircut.cli import main
+
+main()
