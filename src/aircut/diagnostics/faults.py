@@ -93,6 +93,7 @@ UNDEFINED_NAME = Fault("undefined-name", "#<{name}> has not been given a value",
 BAD_INDEX = Fault("bad-index", "{value} is no index: {wanted}")
 DIVISION_BY_ZERO = Fault("division-by-zero", "division by zero")
 DOMAIN = Fault("domain-error", "{function} of {value:g} has no value")
+NO_VALUE = Fault("no-value", "this expression has no value")
 OVERFLOW = Fault("overflow", "the result of {operation} is too large")
 NOT_INTEGER_OPERAND = Fault("not-integer-operand", "{operator} works on 32-bit integers, not on {value:g}")
 BAD_EXISTS = Fault("bad-exists", "EXISTS takes one named variable, as in EXISTS[#<name>]")

@@ -56,7 +56,8 @@ class Writer:
 
     def checked(self, node: Expression | Text) -> tuple[str, int]:
         text, depth = self.expression(node)
-        if isinstance(node, Binary) and node.operator.inline:
+        computed = isinstance(node, Application) and node.function.arguments != "name"
+        if computed or (isinstance(node, Binary) and node.operator.inline):
             return f"finite({text})", depth + 1
         return text, depth
 
@@ -134,7 +135,7 @@ def index_text(value: float | None) -> str:
     if value is None:
         raise TypeError("null index")
     nearest = round(value) if abs(value) < 1e15 else 0
-    if abs(value - nearest) > 1e-4:
+    if not abs(value - nearest) <= 1e-4:
         raise Refusal(F.BAD_INDEX, value=f"{value:g}", wanted="an index is a whole number")
     return str(nearest)
 
@@ -207,7 +208,8 @@ def walk(node: Expression | Text, m: State, k: Values = ()) -> Any:
                     assert isinstance(node.arguments[0], Name)
                     return node.function.run(m.exists(name_of(node.arguments[0], m, k)))
                 what = f"as the argument of {node.function.name.upper()}"
-                return node.function.run(*(solid(argument, m, k, what) for argument in node.arguments))
+                values = [solid(argument, m, k, what) for argument in node.arguments]
+                return finite(applied(node, values))
     except Refusal as refusal:
         refusal.where = refusal.where or node.where
         raise
@@ -238,9 +240,17 @@ def walk_chain(node: Binary, m: State, k: Values) -> float:
 
 def known(value: float | None, node: Expression, m: State, operation: str) -> float:
     """The value of a node, refused when it is null."""
-    if value is None:
+    if value is None or value != value:
         raise Refusal(F.NULL_VALUE, where=node.where, what=title(node, m), operation=operation)
     return value
+
+
+def applied(node: Application, values: Sequence[float]) -> float:
+    """Value of a function. Raises Refusal."""
+    try:
+        return node.function.run(*values)
+    except (ValueError, OverflowError):
+        raise Refusal(F.DOMAIN, where=node.where, function=node.function.name.upper(), value=values[0]) from None
 
 
 def solid(node: Expression, m: State, k: Values, operation: str) -> float:
@@ -280,4 +290,4 @@ def explain(block: Block, m: State, failure: Exception, args_may_be_null: bool) 
             name_of(setting.target, m, ())
     if block.jump is not None and block.jump.target is not None:
         solid(block.jump.target, m, (), "as the target of a jump")
-    raise failure
+    raise failure if isinstance(failure, Refusal) else Refusal(F.NO_VALUE)

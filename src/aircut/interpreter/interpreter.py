@@ -18,6 +18,7 @@ from aircut.interpreter.state import State
 from aircut.interpreter.table import Code, Dialect, Group
 from aircut.interpreter.unit import Branch, Shape, Statement, Unit
 from aircut.kernels import scan
+from aircut.language.arithmetic import EQUAL
 from aircut.language.blocks import Block, parse
 from aircut.language.expressions import Number
 from aircut.language.structure import Routine
@@ -227,7 +228,7 @@ class Interpreter:
                         out.line = 0
                         raise Stopped from None
                     self.recover(refusal)
-                    line = self.line + 1
+                    line = unit.structure.otherwise.get(self.line, self.line + 1)
                     here = unit is self.unit
                 if len(out.rows) >= FULL:
                     self.check_moves()
@@ -338,7 +339,7 @@ class Interpreter:
             steps = self.arranged(codes, letters, {})
         else:
             steps = statement.steps.get(m.motion) or self.arranged(codes, letters, statement.steps)
-        if None in values and not steps.null:
+        if (None in values or any(value != value for value in values)) and not steps.null:
             self.explain(unit, line, TypeError("null word"))
         w = dict(zip(letters, values, strict=True))
         for row in steps.codes:
@@ -403,17 +404,17 @@ class Interpreter:
         """The line after a condition that is false: the next branch that is taken."""
         structure = unit.structure
         while True:
-            line = structure.otherwise.get(line, line + 1)
-            if line >= len(unit.source) or unit.source.classes[line] != scan.OTHER:
-                return line
-            unit.seen[line] = 1
-            known = unit.statement(line)[0]
-            if not isinstance(known, Branch) or known.mark.kind in ("if", "while"):
-                return line
-            if known.mark.kind != "elif":
+            mark = structure.otherwise.get(line)
+            if mark is None:  # the block is not closed, which has been told
                 return line + 1
-            self.line = line
-            if self.truth(unit, line, known):
+            if line in structure.loops:
+                return mark
+            unit.seen[mark] = 1
+            branch = unit.statement(mark)[0]
+            if not isinstance(branch, Branch) or branch.mark.kind != "elif":
+                return mark + 1
+            self.line = line = mark
+            if self.truth(unit, line, branch):
                 return line + 1
 
     def jump(self, unit: Unit, line: int, block: Block, label: float | None) -> int:
@@ -427,11 +428,12 @@ class Interpreter:
             if jump.kind == "break":
                 assert isinstance(jump.target, Number)
                 return unit.structure.after_break(line, str(int(jump.target.value)))
-            if label is None:
+            if label is None or label != label:
                 self.explain(unit, line, TypeError("null label"))
-            if label != round(label) or label < 0:
+            nearest = round(label) if -EQUAL < label < 1e18 else -1
+            if nearest < 0 or abs(label - nearest) > EQUAL:
                 raise Refusal(F.NO_TARGET, label=f"{label:g}", place=unit.structure.routine(line).title())
-            target = unit.structure.target(line, int(label), unit.source, self.settings.block_delete)
+            target = unit.structure.target(line, nearest, unit.source, self.settings.block_delete)
         except Refusal as refusal:
             refusal.where = refusal.where or self.jump_place(unit, line)
             raise

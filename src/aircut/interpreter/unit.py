@@ -13,7 +13,7 @@ from aircut.interpreter.arranging import code_name
 from aircut.interpreter.compiling import compile_block, compile_name, compile_value
 from aircut.kernels import scan
 from aircut.language import structure
-from aircut.language.blocks import Block, Line, Mark, parse
+from aircut.language.blocks import MARK, Block, Line, Mark, parse
 from aircut.language.expressions import Name, Number, Text, Variable
 from aircut.language.text import COMMENT, Clean, clean, columns
 from aircut.source import BATCH, Batch
@@ -28,8 +28,8 @@ FIRST_BATCH = 16  # lines scanned when the program has jumped
 #: Literal numbers that do not decide what a line means, so that lines differing in them share a shape.
 LITERAL = re.compile(r"(?<=[abcdefhijklpqrstuvwxyz=\[+\-*/,])(\d+\.?\d*|\.\d+)(?![\d.])")
 INFINITE = float("inf")
-LABEL = re.compile(r"(?:n\d+)?\x01*")
-MARK_START = re.compile(r"\x01*(?:n\d+)?\x01*(?:if\[|elif|else|end\d|while|sub[\d\"]|o[\d\"])")
+LABEL = re.compile(r"/?(?:n\d+)?\x01*")
+MARK_START = re.compile(r"/?\x01*(?:n\d+)?\x01*" + MARK.pattern)
 
 
 class Shape(NamedTuple):
@@ -90,6 +90,10 @@ class Unit:
             raise Refusal(F.LINE_TOO_LONG, where=(0, 1), length=length, limit=self.line_limit)
         return clean(self.source.text(line))
 
+    def deleted(self, line: int) -> bool:
+        """Whether block delete takes the line away."""
+        return self.block_delete and self.source.raw(line).lstrip().startswith(b"/")
+
     def limits(self) -> tuple[int, int]:
         """First line of the program and the line after its last: what `%` leaves."""
         classes = self.source.classes
@@ -113,7 +117,7 @@ class Unit:
         line = classes.find(scan.OTHER, first, end)
         while line >= 0:
             try:
-                code = self.clean(line).code
+                code = "" if self.deleted(line) else self.clean(line).code
                 if MARK_START.match(code):
                     body = parse(code).body
                     if isinstance(body, Mark):
@@ -169,6 +173,8 @@ class Unit:
         return known
 
     def compile(self, line: int) -> tuple[Statement | Branch | None, tuple[float, ...]]:
+        if self.deleted(line):
+            return None, ()
         text = self.clean(line)
         self.check_encoding(line)
         code = text.code.strip(COMMENT)
@@ -202,8 +208,6 @@ class Unit:
 
     def fresh(self, text: Clean, code: str) -> Statement | Branch | None:
         parsed: Line = parse(code)
-        if parsed.deleted and self.block_delete:
-            return None
         if parsed.body is None:
             return comment_only(text) if text.comments else None
         if isinstance(parsed.body, Mark):

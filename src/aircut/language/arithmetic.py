@@ -42,14 +42,17 @@ def multiply(left: float, right: float) -> float:
 def divide(left: float, right: float) -> float:
     if right == 0.0:
         raise Refusal(F.DIVISION_BY_ZERO)
-    return left / right
+    return finite(left / right)
 
 
 def modulo(left: float, right: float) -> float:
     """Remainder in [0, |right|)."""
     if right == 0.0:
         raise Refusal(F.DIVISION_BY_ZERO)
-    rest = math.fmod(left, right)
+    try:
+        rest = math.fmod(left, right)
+    except ValueError:
+        raise Refusal(F.DOMAIN, function="MOD", value=left) from None
     return rest + abs(right) if rest < 0.0 else rest
 
 
@@ -59,7 +62,7 @@ def power(left: float, right: float) -> float:
     if left == 0.0 and right < 0.0:
         raise Refusal(F.DIVISION_BY_ZERO)
     try:
-        return float(left**right)
+        return finite(float(left**right))
     except OverflowError:
         raise Refusal(F.OVERFLOW, operation="**") from None
 
@@ -101,7 +104,8 @@ def at_most(left: Value, right: Value) -> float:
 
 
 def logical_and(left: float, right: float) -> float:
-    return 1.0 if +left and +right else 0.0
+    left, right = +left, +right
+    return 1.0 if left and right else 0.0
 
 
 def logical_or(left: float, right: float) -> float:
@@ -116,7 +120,7 @@ def logical_xor(left: float, right: float) -> float:
 def bits(value: float, operator: str) -> int:
     """The value as a 32-bit integer. Raises Refusal."""
     nearest = round(value) if -(2.0**31) - 1 < value < 2.0**32 else 0
-    if abs(value - nearest) > EQUAL or not -(2**31) <= nearest < 2**32:
+    if not abs(value - nearest) <= EQUAL or not -(2**31) <= nearest < 2**32:
         raise Refusal(F.NOT_INTEGER_OPERAND, operator=operator, value=value)
     return nearest
 

@@ -31,7 +31,8 @@ from aircut.language.text import COMMENT
 
 LETTERS = "abcdefghijklmpqrstuvwxyz@^"  # of words; n and o are not among them
 KEYWORD = re.compile(r"(goto|break|return|endsub|call(?=[a-z]))")
-MARK = re.compile(r"(elif|if|else|endsub|end|while|sub|o)(?=[\[\d\"]|$|\x01)")
+#: No word begins so, but for I with FIX or FUP behind it.
+MARK = re.compile(r"(elif|if(?!ix\[|up\[)|else|endsub|end|while|sub|o(?=[\d\"]))")
 DIGITS = re.compile(r"\d+")
 LABEL = re.compile(r"(/?)\x01*(?:n(\d*))?")
 
@@ -143,6 +144,8 @@ class LineParser(Parser):
             self.skip()
             if self.at >= len(self.code):
                 raise self.expected("a statement or the number of a block")
+            if (inner := MARK.match(self.code, self.at)) and inner[1] != "endsub":
+                raise self.expected("a statement", "IF and WHILE have lines of their own")
             return self.block(condition)
         if kind == "elif" or not self.code.startswith(("goto", "break"), self.at):
             raise self.expected("THEN, GOTO or BREAK" if kind == "if" else "THEN")

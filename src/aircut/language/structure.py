@@ -20,7 +20,7 @@ from aircut.language.blocks import Mark
 from aircut.source import Source
 
 DEEPEST = 100  # open blocks in a routine
-LABEL = re.compile(rb"^[ \t]*(/?)[ \t]*[nN][ \t]*(\d[\d \t]*)", re.MULTILINE)
+LABEL = re.compile(rb"^[ \t]*(/?)(?:[ \t]|\([^()\n]*\))*[nN][ \t]*(\d[\d \t]*)", re.MULTILINE)
 OPENERS = {"if": "IF", "while": "WHILE"}
 
 
@@ -55,6 +55,7 @@ class Structure:
     otherwise: dict[int, int] = field(default_factory=dict)
     #: elif, else: the line after the END, for who comes from the branch above. end of a while: the WHILE.
     onward: dict[int, int] = field(default_factory=dict)
+    loops: set[int] = field(default_factory=set)  # lines of WHILE
     blocks: list[Span] = field(default_factory=list)
     faults: list[tuple[int, Refusal]] = field(default_factory=list)
     starts: list[int] = field(default_factory=list)  # first lines of all routines, in order
@@ -195,6 +196,7 @@ class Matcher:
         self.structure.blocks.append(Span(block.kind, block.id, first, line))
         if block.kind == "while":
             self.structure.otherwise[first] = line + 1
+            self.structure.loops.add(first)
             self.structure.onward[line] = first
             return
         if block.marks[-1][1] != "else":
