@@ -74,6 +74,10 @@ class Viewer {
     try {
       this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
       this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+      // Without a graphics card, start coarse rather than find out.
+      const context = this.renderer.getContext(), info = context.getExtension("WEBGL_debug_renderer_info");
+      const drawnBy = String(context.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : context.RENDERER));
+      if (/swiftshader|llvmpipe|software/i.test(drawnBy) && model.points > 60_000) this.rough = 5;
     } catch {
       this.say("This browser offers no WebGL 2: the path cannot be drawn.");
     }

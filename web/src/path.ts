@@ -83,15 +83,15 @@ void main() {
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
 }`;
 
-// A strip's color is that of the vertex that ends the segment: tint must not blend across kinds,
-// but may blend with height, so kinds other than feed are looked up again.
+// A segment has the kind of the vertex that ends it. Tint may blend along it with height, but not
+// across kinds, so those other than feed are looked up again.
 const STRIP_FRAGMENT = /* glsl */ `${COMMON}
 flat in float kindOf;
 in vec3 tint;
 out vec4 color;
 void main() {
   if (hideRapids && kindOf < 0.5) discard;
-  color = vec4(kindOf < 0.5 ? rapid : kindOf > 2.5 ? probe : tint, kindOf < 0.5 ? opacity * 0.8 : opacity);
+  color = vec4(kindOf < 0.5 ? rapid : kindOf > 2.5 ? probe : tint, opacity);
 }`;
 
 export interface Palette { rapid: THREE.Color; feedLow: THREE.Color; feedHigh: THREE.Color; probe: THREE.Color; ground: THREE.Color }
@@ -107,7 +107,7 @@ function material(kind: "quad" | "strip", uniforms: Record<string, THREE.IUnifor
     glslVersion: THREE.GLSL3, uniforms,
     vertexShader: kind === "quad" ? QUAD_VERTEX : STRIP_VERTEX,
     fragmentShader: kind === "quad" ? QUAD_FRAGMENT : STRIP_FRAGMENT,
-    transparent: true, depthWrite: !dim, side: THREE.DoubleSide,
+    transparent: dim, depthWrite: !dim, side: THREE.DoubleSide,
   });
 }
 
@@ -200,7 +200,8 @@ export class Path {
       let many = 1, x = points[0], y = points[1], z = points[2];
       for (let i = 1; i < count; i++) {
         const dx = points[3 * i] - x, dy = points[3 * i + 1] - y, dz = points[3 * i + 2] - z;
-        if (i < count - 1 && dx * dx + dy * dy + dz * dz < square && kinds[i] === kinds[i + 1]) continue;
+        const away = dx * dx + dy * dy + dz * dz;
+        if (i < count - 1 && away < square && kinds[i] === kinds[i + 1] && (away < square / 40 || !sharp(points, i))) continue;
         kept[many++] = i;
         x += dx; y += dy; z += dz;
       }
@@ -231,8 +232,8 @@ export class Path {
   /** Up to which point the path is done. */
   seek(point: number): void { this.cursor = point; }
 
-  /** Choose what to draw. pixelAt: mm a pixel at a distance from the camera. slack: pixels of detail to forgo;
-   *  below 0 quads are allowed. */
+  /** Choose what to draw. pixelAt: mm a pixel covers at a distance from the camera. slack: pixels of detail
+   *  to forgo. quads: whether wide lines may be drawn. */
   prepare(camera: THREE.Camera, pixelAt: (distance: number) => number, slack: number, quads: boolean): void {
     const frustum = new THREE.Frustum().setFromProjectionMatrix(
       new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse));
@@ -307,6 +308,15 @@ export class Path {
   }
 
   get hasProbes(): boolean { return this.kinds.includes(PROBE); }
+}
+
+/** Whether a path turns by more than 45° at a point, so that corners outlast thinning. */
+function sharp(points: Float32Array, i: number): boolean {
+  const at = 3 * i;
+  const ax = points[at] - points[at - 3], ay = points[at + 1] - points[at - 2], az = points[at + 2] - points[at - 1];
+  const bx = points[at + 3] - points[at], by = points[at + 4] - points[at + 1], bz = points[at + 5] - points[at + 2];
+  const dot = ax * bx + ay * by + az * bz;
+  return dot < 0 || dot * dot < 0.5 * (ax * ax + ay * ay + az * az) * (bx * bx + by * by + bz * bz);
 }
 
 /** Place of the last entry not above a value, in an ascending list that starts with 0. */

@@ -173,4 +173,3 @@ def html(recording: Recording, sources: dict[str, str], title: str) -> str:
     before, _, rest = viewer.partition(TITLE_MARK)
     between, _, after = rest.partition(DATA_MARK)
     return "".join([before, escape(title), between, *blocks, after])
-

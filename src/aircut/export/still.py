@@ -225,7 +225,7 @@ def shade(axes: Axes, path: Path, view: View, wanted: NDArray[np.bool_], pixel: 
 
     paper = turned(view, path.points)
     step = np.diff(paper, axis=0, prepend=paper[:1])
-    short = wanted & (np.abs(step).max(axis=1) < 4 * pixel)
+    short = wanted & (np.maximum(np.abs(step[:, 0]), np.abs(step[:, 1])) < 4 * pixel)
     if not short.any():
         return short
     cell = pixel / 2  # two by two to a pixel
@@ -237,12 +237,17 @@ def shade(axes: Axes, path: Path, view: View, wanted: NDArray[np.bool_], pixel: 
     which = which[np.argsort(depth, kind="stable")]  # the nearest are drawn last
     height = path.points[which, 2]
     shown = np.full((rows + 1, columns + 1), np.nan, np.float32)
-    pieces = max(1, min(8, ceil(float(np.abs(step[which]).max()) / cell)))
-    for piece in range(pieces):
-        at = paper[which] - step[which] * (piece / pieces)
-        column, row = ((at - (x0, y0)) / cell).astype(np.int64).T
-        inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
-        shown[row[inside], column[inside]] = height[inside]
+    at, back = ((paper[which] - (x0, y0)) / cell).astype(np.float32), (step[which] / cell).astype(np.float32)
+    inside = (at >= 0).all(axis=1) & (at[:, 0] < columns) & (at[:, 1] < rows)
+    at, back, level = at[inside], back[inside], height[inside].astype(np.float32)
+    pieces = np.ceil(np.maximum(np.abs(back[:, 0]), np.abs(back[:, 1])))  # of a segment, a cell each
+    for piece in range(8):
+        if piece:
+            long = pieces > piece
+            at, back, level, pieces = at[long], back[long], level[long], pieces[long]
+        spot = (at - back * (piece / np.maximum(pieces, 1))[:, None]).astype(np.int32)
+        np.clip(spot, 0, (columns, rows), out=spot)
+        shown[spot[:, 1], spot[:, 0]] = level
     for part in (shown, shown.T):  # segments as wide as a pixel: what is empty takes its neighbor's
         np.copyto(part[1:], part[:-1].copy(), where=np.isnan(part[1:]))
     low, high = float(height.min()), float(height.max())
