@@ -10,6 +10,7 @@ const RAPID = 10_000; // mm/min at which rapids are played; the machine's own sp
 const SPEEDS = [0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 5000];
 const PLAYED = 40; // seconds that a whole program takes to play at the speed first offered
 const PICK = 10; // px
+const SMALL = 20_000; // points that are always drawn in full
 
 THREE.ColorManagement.enabled = false; // colors are those of the style sheet, as they stand
 
@@ -134,7 +135,7 @@ class Viewer {
     slider.max = String(model.moves - 1);
     slider.disabled = !model.moves;
     const total = this.seconds[this.seconds.length - 1] || 1;
-    const offered = SPEEDS.find((speed) => total / speed <= PLAYED) ?? SPEEDS[SPEEDS.length - 1];
+    const offered = SPEEDS.find((speed) => speed >= 1 && total / speed <= PLAYED) ?? SPEEDS[SPEEDS.length - 1];
     element<HTMLSelectElement>("speed").replaceChildren(...SPEEDS.map((speed) => new Option(`${speed}×`, String(speed), speed === offered, speed === offered)));
   }
 
@@ -444,7 +445,7 @@ class Viewer {
   /** Coarser when frames come slowly, finer when they come quickly. */
   private adapt(time: number): void {
     const took = time - this.frameAt;
-    if (took > 500) return; // not one frame after another
+    if (took > 500 || this.model.points < SMALL) return; // not one frame after another, or not the path's doing
     this.pace += 0.2 * (took - this.pace);
     if (this.pace > 45 && this.rough < 5) { this.rough++; this.pace = 28; }
     else if (this.pace < 18.5 && this.rough > 0) { this.rough--; this.pace = 28; }
