@@ -21,7 +21,10 @@ def extensions():
         for path in KERNELS
         if path.stem != "nocython"
     ]
-    return cythonize(modules, compiler_directives={"language_level": 3}, quiet=True)
+    modules = cythonize(modules, compiler_directives={"language_level": 3}, quiet=True)
+    for module in modules:
+        module.optional = True  # cythonize forgets it
+    return modules
 
 
 setup(ext_modules=extensions())

@@ -207,6 +207,14 @@ def test_own_tools(tmp_path: Path) -> None:
     assert "warning unknown-tool" in invoke("check", program)
 
 
+def test_optional_stop(tmp_path: Path) -> None:
+    program = tmp_path / "p.ngc"
+    program.write_text("M0\nM1\nM1\nM2\n")
+    assert json.loads(invoke("run", program, "--format", "json"))["counts"]["stops"] == 1
+    assert json.loads(invoke("run", program, "--format", "json", "--optional-stop"))["counts"]["stops"] == 3
+    assert "3, waiting for the operator" in invoke("run", program, "--optional-stop")
+
+
 def test_block_delete(tmp_path: Path) -> None:
     program = tmp_path / "p.ngc"
     program.write_text("G0 X1\n/G0 X2\nM2\n")

@@ -20,6 +20,7 @@ from aircut.canon.toolpath import Extents
 from aircut.diagnostics import Diagnostic, Severity
 from aircut.interpreter.interpreter import Interpreter, Limits, Settings
 from aircut.machine import Machine, built_in
+from aircut.machine import load as load_machine
 from aircut.source import Source
 
 __all__ = ["CanonicalCommand", "Limits", "Program", "Result", "load", "loads"]
@@ -61,6 +62,7 @@ class Result:
         self.files = list(interpreter.files)
         self.diagnostics: list[Diagnostic] = list(interpreter.diagnostics)
         self.sources: dict[str, Source] = {name: interpreter.units[name].source for name in self.files}
+        self.optional_stop = interpreter.settings.optional_stop
         self._interpreter = interpreter
 
     def __repr__(self) -> str:
@@ -171,19 +173,25 @@ class Program:
     def __repr__(self) -> str:
         return f"<Program {self.source.name!r}: {len(self.source)} lines, {self.dialect.name}>"
 
-    def interpreter(self, machine: Machine | None = None, **settings: Any) -> Interpreter:
-        """An Interpreter of this program; settings as in interpreter.Settings."""
+    def interpreter(self, machine: Machine | str | Path | None = None, **settings: Any) -> Interpreter:
+        """An Interpreter of this program.
+
+        machine: a Machine, or the path of a machine's folder; None for the built-in one.
+        settings: as in interpreter.Settings. Raises MachineError for a folder that cannot be used.
+        """
+        if isinstance(machine, str | Path):
+            machine = load_machine(Path(machine))
         return Interpreter(self.source, self.dialect, machine or built_in(), Settings(**settings))
 
-    def check(self, machine: Machine | None = None, **settings: Any) -> list[Diagnostic]:
+    def check(self, machine: Machine | str | Path | None = None, **settings: Any) -> list[Diagnostic]:
         """All diagnostics, going on after errors; no motion is kept."""
         interpreter = self.interpreter(machine, keep_going=True, **settings)
         for _ in interpreter.run():
             pass
         return interpreter.diagnostics
 
-    def run(self, machine: Machine | None = None, **settings: Any) -> Result:
-        """Run to the end, or to the first error."""
+    def run(self, machine: Machine | str | Path | None = None, **settings: Any) -> Result:
+        """Run to the end, or to the first error (keep_going=True: past errors). Machine and settings as above."""
         limits = settings.setdefault("limits", Limits())
         if limits.moves is None:
             settings["limits"] = limits._replace(moves=MOVES_KEPT)
@@ -194,7 +202,7 @@ class Program:
         recording.files = interpreter.files
         return Result(recording, interpreter)
 
-    def stream(self, machine: Machine | None = None, **settings: Any) -> Iterator[Chunk]:
+    def stream(self, machine: Machine | str | Path | None = None, **settings: Any) -> Iterator[Chunk]:
         """Run, yielding the motion in chunks as it comes."""
         return self.interpreter(machine, **settings).run()
 

@@ -61,6 +61,8 @@ def lines(result: Result, numbers: dict[str, Any]) -> list[tuple[str, str]]:
     ]
     if rotation["rapid"] or rotation["feed"]:
         rows.insert(1, ("rotation", f"{rotation['rapid']:.3f}° rapid, {rotation['feed']:.3f}° feed"))
+    if counts["stops"]:
+        rows.append(("stops", f"{counts['stops']:,}, waiting for the operator"))
     if numbers["dwell_seconds"]:
         rows.append(("dwell", f"{numbers['dwell_seconds']:g} s"))
     rows += [("message", message.text) for message in result.messages]

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from aircut.api import Result
 
 JSON_VERSION = 1
+STOPS = ("PROGRAM_STOP", "OPTIONAL_PROGRAM_STOP")
 
 
 def box(extents: Extents | None) -> dict[str, list[float]] | None:
@@ -33,6 +34,7 @@ def figures(result: Result) -> dict[str, Any]:
     rapid = toolpath.kind == Kind.TRAVERSE
     linear = moves_linear(result)
     changes = [event.values[0] for event in result.events if event.name in ("CHANGE_TOOL", "CHANGE_TOOL_NUMBER")]
+    stops = [event.name for event in result.events if event.name in STOPS]
     seconds = sum(event.values[0] for event in result.events if event.name == "DWELL")
     return {
         "extents": {
@@ -56,6 +58,7 @@ def figures(result: Result) -> dict[str, Any]:
             "feeds": int((toolpath.kind == Kind.FEED).sum()),
             "arcs": int((toolpath.kind == Kind.ARC).sum()),
             "tool_changes": len(changes),
+            "stops": sum(name == "PROGRAM_STOP" or result.optional_stop for name in stops),
         },
         "dwell_seconds": seconds,
     }
