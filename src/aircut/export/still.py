@@ -223,34 +223,37 @@ def shade(axes: Axes, path: Path, view: View, wanted: NDArray[np.bool_], pixel: 
     """
     import numpy as np
 
-    paper = turned(view, path.points)
-    step = np.diff(paper, axis=0, prepend=paper[:1])
-    short = wanted & (np.maximum(np.abs(step[:, 0]), np.abs(step[:, 1])) < 4 * pixel)
-    if not short.any():
-        return short
     cell = pixel / 2  # two by two to a pixel
     x0, x1, y0, y1 = *axes.get_xlim(), *axes.get_ylim()
     columns, rows = ceil((x1 - x0) / cell), ceil((y1 - y0) / cell)
-    which = np.flatnonzero(short)
-    toward = np.cross(view.right, view.up)  # from the paper to the eye
-    depth = path.points[which] @ toward
-    which = which[np.argsort(depth, kind="stable")]  # the nearest are drawn last
-    height = path.points[which, 2]
+    u, v = ((turned(view, path.points) - (x0, y0)) / cell).astype(np.float32).T.copy()
+    du, dv = np.diff(u, prepend=u[:1]), np.diff(v, prepend=v[:1])
+    pieces = np.maximum(np.abs(du), np.abs(dv))  # of a segment, a cell each
+    short = wanted & (pieces < 8)
+    which = np.flatnonzero(short & (u >= 0) & (u < columns) & (v >= 0) & (v < rows))
+    if not len(which):
+        return short
+    # The nearest to the eye are drawn last.
+    depth = path.points[which] @ np.cross(view.right, view.up)
+    low, high = float(depth.min()), float(depth.max())
+    near = (depth - low) / ((high - low) or 1.0)
+    which = which[np.argsort((near * 65535).astype(np.uint16), kind="stable")]
+    height = path.points[which, 2].astype(np.float32)
+    u, v, du, dv, level, pieces = u[which], v[which], du[which], dv[which], height, np.ceil(pieces[which])
     shown = np.full((rows + 1, columns + 1), np.nan, np.float32)
-    at, back = ((paper[which] - (x0, y0)) / cell).astype(np.float32), (step[which] / cell).astype(np.float32)
-    inside = (at >= 0).all(axis=1) & (at[:, 0] < columns) & (at[:, 1] < rows)
-    at, back, level = at[inside], back[inside], height[inside].astype(np.float32)
-    pieces = np.ceil(np.maximum(np.abs(back[:, 0]), np.abs(back[:, 1])))  # of a segment, a cell each
     for piece in range(8):
         if piece:
-            long = pieces > piece
-            at, back, level, pieces = at[long], back[long], level[long], pieces[long]
-        spot = (at - back * (piece / np.maximum(pieces, 1))[:, None]).astype(np.int32)
-        np.clip(spot, 0, (columns, rows), out=spot)
-        shown[spot[:, 1], spot[:, 0]] = level
+            long = np.flatnonzero(pieces > piece)
+            u, v, du, dv, level, pieces = (each[long] for each in (u, v, du, dv, level, pieces))
+        if not len(u):
+            break
+        back = piece / np.maximum(pieces, 1)
+        column = np.clip((u - du * back).astype(np.int32), 0, columns)
+        row = np.clip((v - dv * back).astype(np.int32), 0, rows)
+        shown[row, column] = level
     for part in (shown, shown.T):  # segments as wide as a pixel: what is empty takes its neighbor's
         np.copyto(part[1:], part[:-1].copy(), where=np.isnan(part[1:]))
-    low, high = float(height.min()), float(height.max())
+    low, high = float(np.nanmin(shown)), float(np.nanmax(shown))
     part = np.nan_to_num((shown - low) / ((high - low) or 1.0))[..., None]
     picture = np.empty((*shown.shape, 4), np.float32)
     picture[..., :3] = np.array(LOW) * (1 - part) + np.array(HIGH) * part
