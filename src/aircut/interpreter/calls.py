@@ -36,7 +36,7 @@ def callee(w: Words) -> tuple[str, bool]:
     """Name of the called subroutine from the P word, and whether it is a number. Raises Refusal."""
     value: Any = w["p"]
     if isinstance(value, str):
-        return value.strip().lower(), False
+        return value.strip(), False
     number = whole(w, "p")
     if number < 0:
         raise out_of_range(w, "p", "a subroutine's number")

@@ -278,7 +278,7 @@ def explain(block: Block, m: State, failure: Exception, args_may_be_null: bool) 
     if block.condition is not None:
         solid(block.condition, m, (), "as a condition")
     for word in block.words:
-        if args_may_be_null and word.letter not in "gmp":
+        if args_may_be_null and word.letter not in "gpl":
             walk(word.value, m)
         elif not isinstance(word.value, Text):
             solid(word.value, m, (), f"as the value of {word.letter.upper()}")

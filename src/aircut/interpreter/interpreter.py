@@ -18,7 +18,7 @@ from aircut.interpreter.state import State
 from aircut.interpreter.table import Code, Dialect, Group
 from aircut.interpreter.unit import Branch, Shape, Statement, Unit
 from aircut.kernels import scan
-from aircut.language.arithmetic import EQUAL
+from aircut.language.arithmetic import EQUAL, is_null
 from aircut.language.blocks import Block, parse
 from aircut.language.expressions import Number
 from aircut.language.structure import Routine
@@ -86,7 +86,7 @@ class Interpreter:
         self.units = {source.name: self.unit}
         self.stack: list[Level] = []
         self.plans: dict[bytes, Shape] = {}
-        self.routine = self.unit.structure.main
+        self.routine = self.unit.entry()
         self.repeated = 0
         self.passes = 0
         self.watched: tuple[int, int, tuple[Any, ...]] | None = None
@@ -163,6 +163,8 @@ class Interpreter:
         try:
             if unit.source.classes[line] == PLAIN:
                 shape = self.plan(unit.source.words(line)[0])
+                if shape is None:
+                    return
                 codes, letters = shape.codes, shape.letters
             else:
                 statement, _ = unit.statement(line)
@@ -206,6 +208,9 @@ class Interpreter:
                         if known is None:
                             words, values = unit.words(line)
                             shape = plans.get(words) or self.plan(words)
+                            if shape is None:
+                                classes[line] = scan.OTHER
+                                continue
                             if self.repeated:
                                 cache[line] = (shape, values)
                         else:
@@ -257,8 +262,8 @@ class Interpreter:
 
     # --- blocks
 
-    def plan(self, words: bytes) -> Shape:
-        """What plain lines of this shape (see kernels.scan) mean."""
+    def plan(self, words: bytes) -> Shape | None:
+        """What plain lines of this shape (see kernels.scan) mean; None leaves them to the general lane."""
         codes: list[str] = []
         letters: list[str] = []
         for match in SHAPE_WORD.finditer(words):
@@ -267,8 +272,13 @@ class Interpreter:
                 codes.append(code_name(letter, float(match[2])))
             else:
                 letters.append(letter)
+        if any(name[0] == "m" for name in codes) and any(self.is_macro(name) for name in codes):
+            return None  # its M is an argument
         shape = self.plans[words] = Shape(tuple(codes), tuple(letters), {})
         return shape
+
+    def is_macro(self, name: str) -> bool:
+        return name[0] == "g" and name in self.dialect.codes and self.dialect.codes[name].sole
 
     def arranged(self, codes: tuple[str, ...], letters: tuple[str, ...], known: dict[Any, Steps]) -> Steps:
         """The steps of a block under the motion mode in force, remembered in `known`. Raises Refusal."""
@@ -339,9 +349,10 @@ class Interpreter:
             steps = self.arranged(codes, letters, {})
         else:
             steps = statement.steps.get(m.motion) or self.arranged(codes, letters, statement.steps)
-        if (None in values or any(value != value for value in values)) and not steps.null:
-            self.explain(unit, line, TypeError("null word"))
         w = dict(zip(letters, values, strict=True))
+        if None in values or any(value != value for value in values):
+            if not steps.null or is_null(w.get("p", 0.0)) or is_null(w.get("l", 0.0)):
+                self.explain(unit, line, TypeError("null word"))
         for row in steps.codes:
             if row.modal:
                 self.set_mode(row)
@@ -506,16 +517,19 @@ class Interpreter:
 
     def lookup(self, call: Call) -> tuple[Unit, Routine]:
         """The subroutine of a name: in the calling file, then in the macros folders. Raises Refusal."""
-        routine = self.unit.structure.routines.get(call.name)
-        if routine is not None:
+        name = call.name.lower()
+        routine = self.unit.structure.routines.get(name)
+        if routine is not None and (call.numbered or not macros.has_extension(call.name)):
             return self.unit, routine
-        name = f"O{call.name}" if call.numbered else call.name
-        unit = self.external(name)
+        written = f"O{call.name}" if call.numbered else call.name
+        unit = self.external(written)
         if unit is None:
             hint = "subroutines stand in the file, or as files in the macros folders (--macros)"
-            raise Refusal(F.NO_SUBROUTINE, "p", name=name, hint=hint)
-        routines = unit.structure
-        return unit, routines.routines.get(call.name, routines.main)
+            raise Refusal(F.NO_SUBROUTINE, "p", name=written, hint=hint)
+        entry = unit.entry()
+        stem = macros.stem(call.name).lower()
+        named = entry.name in (call.name.lower(), stem, stem.removeprefix("o"))
+        return unit, entry if named else unit.structure.main
 
     def external(self, name: str) -> Unit | None:
         """The unit of a macro file. Raises Refusal for names that are no file names."""
@@ -581,7 +595,7 @@ class Interpreter:
         self.count(line, 0, line)
         self.stack.clear()
         self.unit = self.units[self.files[0]]
-        self.routine = self.unit.structure.main
+        self.routine = self.unit.entry()
         self.state.out.file = 0
         return self.routine.first
 

@@ -14,11 +14,21 @@ from aircut.diagnostics import faults as F
 EXTENSION = ".ngc"
 
 
+def has_extension(name: str) -> bool:
+    """Whether a called name says which file it means: then no subroutine of the calling file is meant."""
+    return bool(Path(name).suffix)
+
+
+def stem(name: str) -> str:
+    """A called name without its extension."""
+    return Path(name).stem
+
+
 def find(name: str, folders: Iterable[Path]) -> Path | None:
     """The file of a called name; without extension .ngc is meant. Raises Refusal for names that are paths."""
     if not name or "/" in name or "\\" in name or ".." in name or "\0" in name:
         raise Refusal(F.BAD_FILE_NAME, "p", name=name)
-    wanted = name if Path(name).suffix else name + EXTENSION
+    wanted = name if has_extension(name) else name + EXTENSION
     for folder in folders:
         if (folder / wanted).is_file():
             return folder / wanted

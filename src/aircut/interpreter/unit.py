@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from array import array
 
     from aircut.interpreter.table import Code, Dialect
+    from aircut.language.structure import Routine
     from aircut.source import Source
 
 FIRST_BATCH = 16  # lines scanned when the program has jumped
@@ -126,6 +127,22 @@ class Unit:
                 pass
             line = classes.find(scan.OTHER, line + 1, end)
 
+    def entry(self) -> Routine:
+        """Where the text starts to run: at its top; behind the O or SUB that is its first line (AMB-CALL-4)."""
+        main = self.structure.main
+        if len(self.structure.order) > 1 and not any(self.says_something(line) for line in range(main.first, main.end)):
+            return self.structure.order[1]
+        return main
+
+    def says_something(self, line: int) -> bool:
+        """Whether a line is more than blanks and comments."""
+        if self.source.classes[line] != scan.OTHER:
+            return self.source.classes[line] == scan.PLAIN
+        try:
+            return bool(self.clean(line).code.strip(COMMENT))
+        except Refusal:
+            return True
+
     def place(self, line: int, refusal: Refusal) -> Span:
         """Columns of a fault in a line, from 1."""
         text = self.source.text(line) if self.source.length(line) <= self.line_limit else ""
@@ -227,8 +244,9 @@ def make(block: Block, dialect: Dialect, comment: str | None = None) -> Statemen
     kept = []
     letters: list[str] = []
     moving = False
+    macro = takes_arguments(block, dialect)
     for word in block.words:
-        if word.letter in "gm" and not (block.call and word.letter == "m"):
+        if word.letter == "g" or (word.letter == "m" and not macro):
             if isinstance(word.value, Number):
                 codes.append(code_name(word.letter, word.value.value))
                 continue
@@ -255,6 +273,16 @@ def make(block: Block, dialect: Dialect, comment: str | None = None) -> Statemen
         {},
         comment,
     )
+
+
+def takes_arguments(block: Block, dialect: Dialect) -> bool:
+    """Whether the block calls a macro by CALL or a G code: its M word is an argument then (AMB-CALL-11)."""
+    names = [
+        code_name("g", word.value.value)
+        for word in block.words
+        if word.letter == "g" and isinstance(word.value, Number)
+    ]
+    return bool(block.call) or any(name in dialect.codes and dialect.codes[name].sole for name in names)
 
 
 def target_of(target: Variable | Name, dialect: Dialect) -> tuple[str, Any]:

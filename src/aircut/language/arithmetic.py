@@ -77,6 +77,7 @@ def equal(left: Value, right: Value) -> float:
 
 
 def is_null(value: Value) -> bool:
+    """Whether a value is null, or not a number."""
     return value is None or value != value
 
 

@@ -30,9 +30,9 @@ from aircut.language.expressions import (
 from aircut.language.text import COMMENT
 
 LETTERS = "abcdefghijklmpqrstuvwxyz@^"  # of words; n and o are not among them
-KEYWORD = re.compile(r"(goto|break|return|endsub|call(?=[a-z]))")
+KEYWORD = re.compile(r"(goto|break|return|endsub|call(?=[a-z]|$|\x01))")
 #: No word begins so, but for I with FIX or FUP behind it.
-MARK = re.compile(r"(elif|if(?!ix\[|up\[)|else|endsub|end|while|sub|o(?=[\d\"]))")
+MARK = re.compile(r"(elif|if(?!ix\[|up\[)|else|endsub|end|while|sub|o(?=[\d\"]|$|\x01))")
 DIGITS = re.compile(r"\d+")
 LABEL = re.compile(r"(/?)\x01*(?:n(\d*))?")
 
