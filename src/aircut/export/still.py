@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import ceil, floor, log10
 from typing import IO, TYPE_CHECKING, Any, Literal, NamedTuple
 
-from aircut.canon import Kind, Recording
+from aircut.canon import Kind, Recording, Toolpath
 from aircut.export.page import Frame, finite, frames
 from aircut.geometry.polylines import polyline
 
@@ -135,15 +135,19 @@ def gather(recording: Recording) -> Path | None:
     else:
         zeros = [("0" if not at.any() and len(zeros) == 1 else name, at) for name, at in zeros]
     # The picture is of the cut where rapids reach far beyond it, as from a far machine zero.
-    low, high = points.min(axis=0), points.max(axis=0)
-    cut = kinds != Kind.TRAVERSE
-    cut[0] = False
-    if cut.any():
-        ends = cut | np.append(cut[1:], False)
-        least, most = points[ends].min(axis=0), points[ends].max(axis=0)
+    low, high = box(toolpath, None)
+    if (toolpath.kind != Kind.TRAVERSE).any():
+        least, most = box(toolpath, False)
         if 0 < np.linalg.norm(most - least) < np.linalg.norm(high - low) / 2.5:
             return Path(points, kinds, least, most, zeros, "cut ")
     return Path(points, kinds, low, high, zeros, "")
+
+
+def box(toolpath: Toolpath, rapid: bool | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Lowest and highest X, Y, Z of the moves, mm: exact, where drawn arcs are a little inside."""
+    extents = toolpath.extents(rapid)
+    assert extents is not None
+    return finite(extents.low[:3]), finite(extents.high[:3])
 
 
 def zero(frame: Frame) -> NDArray[np.float64]:
