@@ -276,7 +276,7 @@ def test_more_brackets_change_nothing(tree):
             case Operation(name, left, right):
                 return f"[{full(left)} {name} {full(right)}]"
             case Minus(of):
-                return f"-{full(of)}"
+                return f"-[{full(of)}]"
             case Function(name, of):
                 return f"{name}[{full(of)}]"
             case Atan(y, x):
