@@ -76,6 +76,8 @@ def arrange(rows: Sequence[Code], letters: Sequence[str], motion: Code | None, d
         if letter not in axes:
             wanted = "".join(a for a in AXES if a in axes or a == letter).upper()
             raise Refusal(F.AXIS_DISABLED, letter, axis=letter.upper(), wanted=wanted)
+    if not axis_letters and not (takers and any(letter in takers[0].wakes for letter in letters)):
+        rows = [row for row in rows if not row.fits]  # nothing moves that they could modify
     supported(takers)
     items = [dialect.items[letter] for letter in letters if letter in dialect.items]
     used(rows, letters, dialect)

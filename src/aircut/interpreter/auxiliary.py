@@ -83,14 +83,16 @@ def declare_tool(m: State, w: Words) -> None:
 
 
 def stop(number: int, command: str, m: State, w: Words) -> None:
-    """M0, M1: wait for the operator."""
-    m.stop_code = float(number)
+    """M0, M1: wait for the operator. #5150 does not know M1."""
+    if number == 0:
+        m.stop_code = 0.0
     m.out.event(command)
 
 
 def end(number: int, reset: bool, m: State, w: Words) -> None:
-    """M2, M30, M102."""
-    m.stop_code = float(number)
+    """M2, M30, M102. #5150 does not know M102."""
+    if reset:
+        m.stop_code = float(number)
     m.transfer = End(reset)
 
 

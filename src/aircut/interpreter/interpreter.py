@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from typing import Any, NamedTuple, NoReturn
 
 from aircut.canon import CHUNK, ROW, Chunk
@@ -14,8 +14,9 @@ from aircut.interpreter.arranging import Steps, arrange, code_name, find
 from aircut.interpreter.auxiliary import End, Restart
 from aircut.interpreter.calls import ARGUMENTS, Call, Return
 from aircut.interpreter.compiling import FAILURES, explain
+from aircut.interpreter.requests import Request
 from aircut.interpreter.state import State
-from aircut.interpreter.table import Code, Dialect, Group
+from aircut.interpreter.table import Code, Dialect, Group, Words
 from aircut.interpreter.unit import Branch, Shape, Statement, Unit
 from aircut.kernels import scan
 from aircut.language.arithmetic import EQUAL, is_null
@@ -92,6 +93,8 @@ class Interpreter:
         self.watched: tuple[int, int, tuple[Any, ...]] | None = None
         self.line = 0  # being run, from 0
         self.ended: End | None = None
+        #: A code that asks the world: its conversation, the codes still to run, and the block's words.
+        self.talk: tuple[Generator[Request, Any, None], tuple[Code, ...], Words] | None = None
 
     # --- diagnostics
 
@@ -120,7 +123,13 @@ class Interpreter:
     # --- the run
 
     def run(self) -> Iterator[Chunk]:
-        """Run the program; yields its motion and events as they come."""
+        """Run the program with nobody to ask; yields its motion and events as they come."""
+        for item in self.execute():
+            if isinstance(item, Chunk):
+                yield item
+
+    def execute(self) -> Generator[Chunk | Request, Any, None]:
+        """Run the program: yields its motion and events, and requests, to be sent their replies (None: not executed)."""
         m = self.state
         starting.begin(m)
         self.check_structure(self.unit)
@@ -181,7 +190,7 @@ class Interpreter:
             ):  # these depend on the modes in force
                 self.tell_refusal(refusal, unit, line, stack=False)
 
-    def blocks(self) -> Iterator[Chunk]:
+    def blocks(self) -> Generator[Chunk | Request, Any, None]:
         """The main loop: each turn of the outer one enters a routine, each of the inner one runs a line."""
         m = self.state
         out = m.out
@@ -220,10 +229,14 @@ class Interpreter:
                         for row in steps.codes:
                             if row.modal:
                                 self.set_mode(row)
-                            row.run(m, w)
+                            if (talk := row.run(m, w)) is not None:
+                                self.talk = (talk, steps.codes[steps.codes.index(row) + 1 :], w)
+                                break
                         line += 1
                     else:
                         line = self.step(unit, line)
+                    if self.talk is not None:
+                        yield from self.converse()
                     if m.transfer is not None:
                         line = self.follow(line)
                         here = False
@@ -242,7 +255,7 @@ class Interpreter:
     def recover(self, refusal: Refusal) -> None:
         """Make ready for the block after one at fault."""
         m = self.state
-        m.transfer = None
+        m.transfer = self.talk = None
         m.exact_stop = m.machine_frame = False
         if refusal.fault is F.NOT_SUPPORTED_YET:  # what follows in that mode cannot be run either
             row = self.dialect.codes.get(refusal.values["code"].lower())
@@ -356,7 +369,23 @@ class Interpreter:
         for row in steps.codes:
             if row.modal:
                 self.set_mode(row)
-            row.run(m, w)
+            if (talk := row.run(m, w)) is not None:
+                self.talk = (talk, steps.codes[steps.codes.index(row) + 1 :], w)
+                break
+
+    def converse(self) -> Generator[Request, Any, None]:
+        """Carry on a block whose code has something to ask, and the codes after it. Raises Refusal."""
+        assert self.talk is not None
+        talk, rest, w = self.talk
+        self.talk = None
+        self.state.asked += 1
+        yield from talk
+        for row in rest:
+            if row.modal:
+                self.set_mode(row)
+            further = row.run(self.state, w)
+            if further is not None:
+                yield from further
 
     def computed_codes(
         self, codes: tuple[str, ...], letters: tuple[str, ...], values: tuple[Any, ...]

@@ -197,7 +197,7 @@ def center_by_words(
     """Center from I, J, K, in the plane's axes, mm. Raises Refusal."""
     across = CENTER_WORDS[axes[2]]
     if across in w:
-        raise Refusal(F.ARC_WRONG_CENTER, across, plane=PLANES[m.plane])
+        raise Refusal(F.ARC_WRONG_CENTER, across, word=across.upper(), plane=PLANES[m.plane])
     words = [CENTER_WORDS[axis] for axis in axes[:2]]
     if m.arc_absolute:
         for word in words:

@@ -79,6 +79,7 @@ class State:
         self.scope: dict[str, float | None] = {}
         self.line = 0  # line being run, from 1
         self.calls = 0  # depth
+        self.asked = 0  # conversations with the world so far
         self.restarts = 0  # by M47
         self.transfer: Any = None  # where control goes after the block: a Call, Return, End or Restart
 

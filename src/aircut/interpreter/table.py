@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Mapping
 from enum import IntEnum, IntFlag, auto
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
+    from aircut.interpreter.requests import Request
     from aircut.interpreter.state import State
 
 Words = Mapping[str, Any]  # letter -> value, of one block
-Handler = Callable[["State", Words], None]
+#: What carries a code out: a function, or a generator of requests where it asks the world.
+Handler = Callable[["State", Words], "Generator[Request, Any, None] | None"]
 
 AXES = "xyzabc"
 

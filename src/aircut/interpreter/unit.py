@@ -206,7 +206,7 @@ class Unit:
             if not values:
                 return self.fresh(text, code), ()
             try:
-                made = self.fresh(text, shape)
+                made = self.fresh(text, shape, shape=True)
             except Refusal:
                 made = None
             if not isinstance(made, Statement):  # say what is wrong with the line itself
@@ -223,8 +223,8 @@ class Unit:
                 where = (error.start, error.start + 1)
                 self.encoding.append((line, Refusal(F.INVALID_UTF8, where=where, byte=raw[error.start])))
 
-    def fresh(self, text: Clean, code: str) -> Statement | Branch | None:
-        parsed: Line = parse(code)
+    def fresh(self, text: Clean, code: str, shape: bool = False) -> Statement | Branch | None:
+        parsed: Line = parse(code, shape)
         if parsed.body is None:
             return comment_only(text) if text.comments else None
         if isinstance(parsed.body, Mark):

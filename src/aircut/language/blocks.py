@@ -88,9 +88,9 @@ class Line(NamedTuple):
     body: Block | Mark | None
 
 
-def parse(code: str) -> Line:
-    """Parse a clean line. Raises Refusal with the place in it."""
-    parser = LineParser(code)
+def parse(code: str, shape: bool = False) -> Line:
+    """Parse a clean line; in a shape, `?` stands for any literal number. Raises Refusal with the place in it."""
+    parser = LineParser(code, shape)
     return parser.line()
 
 

@@ -102,8 +102,9 @@ def illegal_character(character: str, where: Where, hint: str = "") -> Refusal:
 class Parser:
     """Reads values and expressions from a clean line, from `at` on."""
 
-    def __init__(self, code: str) -> None:
+    def __init__(self, code: str, shape: bool = False) -> None:
         self.code = code
+        self.shape = shape
         self.at = 0
         self.depth = 0
         self.parameters = 0
@@ -163,7 +164,7 @@ class Parser:
         character = self.code[start : start + 1]
         if number := self.number():
             return number
-        if character == "?":
+        if character == "?" and self.shape:
             self.at += 1
             self.parameters += 1
             return Parameter(self.parameters - 1, (start, self.at))
