@@ -130,7 +130,9 @@ class LineParser(Parser):
             return self.subroutine(start, kind)
         if kind in ("else", "end"):
             return Mark(kind, self.id(kind.upper()), None, (start, self.at))
+        self.skip()
         condition = self.condition(kind.upper())
+        self.skip()
         if kind == "while":
             if not self.take("do"):
                 hint = "the letter O, not a zero" if self.code.startswith("d0", self.at) else ""
