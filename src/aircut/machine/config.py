@@ -1,23 +1,51 @@
 """A machine as configured: machine.toml, or the built-in one where no folder is given.
 
-Lengths mm, speeds mm/min (deg/min), accelerations mm/s² (deg/s²).
+Lengths mm, speeds mm/min (deg/min), accelerations mm/s² (deg/s²), jerk mm/s³ (deg/s³).
+Every setting is told in docs/reference/machine.md.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+import re
+import sys
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Any, Literal, TypeVar, get_args, get_type_hints
 
 import msgspec
+from msgspec import Meta
 
 from aircut.machine import tools as tool_library
 from aircut.machine.tools import EMPTY, Tool
 
-AXES = "xyzabc"
+AXES = "xyzabc"  # programmable
 LINEAR = "xyz"
+ROTARY = "abc"
+AUXILIARY = "uvw"  # configured, read by programs, never moved by them (AMB-VAR-17)
+UNBOUNDED = 1e9  # degrees, the limits of a rotary axis that is given none
 
 AxisType = Literal["disabled", "linear", "rotary_free", "rotary_head", "rotary_table", "gantry_1", "gantry_2"]
+#: Source: 004 section 2.2.3; model 4 is the "Tilting Spindle AC" of 000 (AMB-NAM-11).
+Kinematics = Literal[
+    "trivial", "independent_rot_axes", "rotary_table_ac", "rotary_table_bc", "tilting_spindle_ca", "tilting_spindle_ab"
+]
+#: Names by the number that a program reads.
+AXIS_TYPES: tuple[str, ...] = get_args(AxisType)
+KINEMATICS: tuple[str, ...] = get_args(Kinematics)
+#: The rotary axes that a model turns about.
+MODEL_AXES = {
+    "rotary_table_ac": "ac",
+    "rotary_table_bc": "bc",
+    "tilting_spindle_ca": "ca",
+    "tilting_spindle_ab": "ab",
+}
+
+LARGEST = sys.float_info.max
+Finite = Annotated[float, Meta(ge=-LARGEST, le=LARGEST)]
+Positive = Annotated[float, Meta(gt=0.0, le=LARGEST)]
+NotNegative = Annotated[float, Meta(ge=0.0, le=LARGEST)]
+Count = Annotated[int, Meta(ge=0)]
 
 
 class MachineError(Exception):
@@ -25,50 +53,117 @@ class MachineError(Exception):
 
 
 class Axis(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One axis."""
+    """One axis. What stands below `jerk` matters for rotary axes only.
+
+    Raises ValueError where min is not below max.
+    """
 
     type: AxisType = "linear"
-    min: float = -10_000.0
-    max: float = 10_000.0
-    velocity: float = 10_000.0
-    acceleration: float = 500.0
+    min: Finite = -10_000.0
+    max: Finite = 10_000.0
+    velocity: Positive = 10_000.0
+    acceleration: Positive = 500.0
+    jerk: NotNegative = 0.0  # 0: not limited
+    motion_mode: Literal["continuous", "indexing"] = "continuous"
+    convention: Literal["normal", "inverse"] = "normal"  # inverse: turns left-handed
+    wrapped_rotary: bool = False  # a display setting, without effect on targets (AMB-ROT-7)
+    parallel_to: Literal["X", "Y", "Z"] = "X"  # the linear axis that it turns about
+    origin_mode: Literal["custom", 1, 2, 3, 4, 5, 6, 7, 8, 9] = "custom"  # or a work system, 1 for G54
+    origin_x: Finite = 0.0  # a point of its line, machine coordinates
+    origin_y: Finite = 0.0
+    origin_z: Finite = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.min < self.max:
+            raise ValueError(f"min must be less than max, not {self.min:g} and {self.max:g}")
+
+    @property
+    def rotary(self) -> bool:
+        """Whether it turns: its positions are degrees."""
+        return self.type.startswith("rotary")
 
 
 class Options(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Settings of the controller."""
+    """Settings of the controller. Counts are how many there are, numbered from 1."""
 
     missing_feed: Literal["default", "error"] = "default"  # a feed move with no F (AMB-FEED-1)
-    default_feed: float = 1000.0
+    default_feed: Positive = 1000.0
     units: Literal[20, 21] = 21  # of the user interface
+    tool_change: Literal["internal", "macro"] = "internal"  # M6
+    pallet_shuttle: bool = False  # M60 and M30 run pallet_shuttle.ngc (AMB-IO-9)
+    m66_read_back: bool = True  # M66 puts the input's value into #5720 (AMB-IO-2)
+    inputs: Count = 32
+    outputs: Count = 32
+    analog_inputs: Count = 8
+    analog_outputs: Count = 8
+    peck_retract: Positive = 0.254  # mm, whatever the units in force (AMB-CYC-7)
+    entry: Literal["nist", "easy", "normal"] = "nist"  # lead-in of cutter compensation (AMB-CMP-5)
 
 
 class Spindle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The spindle. max_speed: revolutions a minute."""
 
-    max_speed: float = 60_000.0
+    max_speed: Positive = 60_000.0
+
+
+class RotaryTable(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Where a rotary table's axes meet: D of AMB-RTCP-1, mm."""
+
+    d_x: Finite = 0.0
+    d_y: Finite = 0.0
+    d_z: Finite = 0.0
+
+
+class TiltingSpindle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The arms of a tilting spindle: H and J of AMB-RTCP-1, mm."""
+
+    h_x: Finite = 0.0
+    h_y: Finite = 0.0
+    h_z: Finite = 0.0
+    j_x: Finite = 0.0
+    j_y: Finite = 0.0
+    j_z: Finite = 0.0
 
 
 class System(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What the controller says of itself (AMB-NAM-13)."""
 
-    version: tuple[int, int, int, int] = (0, 3, 7, 167)
-    customer: int = 0
-    interface_level: int = 9
+    version: tuple[Count, Count, Count, Count] = (0, 3, 7, 167)
+    customer: Count = 0
+    interface_level: Count = 9
 
 
 class File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The shape of machine.toml."""
+    """The shape of machine.toml. axes: by small letter.
+
+    Raises ValueError where an axis or the kinematics model does not fit the machine.
+    """
 
     name: str = "machine"
+    type: Literal["mill"] = "mill"
+    kinematics: Kinematics = "trivial"
     axes: dict[str, Axis] = {}
     options: Options = Options()
     spindle: Spindle = Spindle()
+    rotary_table: RotaryTable = RotaryTable()
+    tilting_spindle: TiltingSpindle = TiltingSpindle()
     system: System = System()
+
+    def __post_init__(self) -> None:
+        for letter in LINEAR:
+            if letter in self.axes and self.axes[letter].rotary:
+                raise ValueError(
+                    f"axes.{letter.upper()}.type cannot be {self.axes[letter].type}: X, Y and Z are linear"
+                )
+        wanted = MODEL_AXES.get(self.kinematics, "")
+        if not all(letter in self.axes and self.axes[letter].rotary for letter in wanted):
+            raise ValueError(f"kinematics: {self.kinematics} needs rotary axes {' and '.join(wanted.upper())}")
 
 
 class Machine:
     """A machine: configuration, tools, and the variables that it remembers.
 
+    axes: the programmable ones by small letter; auxiliary: U, V, W.
     tools: by id. own_tools: a library was given, so a tool that is not in it is an
     error (AMB-TC-5). macros: folders searched for macro files, in order.
     variables: numbered variables before the run (mm, degrees); a run that ends
@@ -84,9 +179,14 @@ class Machine:
         folder: Path | None = None,
     ) -> None:
         self.name = file.name
-        self.axes = file.axes
+        self.type = file.type
+        self.kinematics = file.kinematics
+        self.axes = {letter: axis for letter, axis in file.axes.items() if letter in AXES}
+        self.auxiliary = {letter: axis for letter, axis in file.axes.items() if letter in AUXILIARY}
         self.options = file.options
         self.spindle = file.spindle
+        self.rotary_table = file.rotary_table
+        self.tilting_spindle = file.tilting_spindle
         self.system = file.system
         self.tools = tools
         self.own_tools = own_tools
@@ -96,7 +196,7 @@ class Machine:
 
     @property
     def letters(self) -> str:
-        """Letters of the axes that the machine has."""
+        """Letters of the programmable axes that the machine has."""
         return "".join(a for a in AXES if a in self.axes and self.axes[a].type != "disabled")
 
     def tool(self, id: int) -> Tool | None:
@@ -112,8 +212,7 @@ def built_in(axes: str = "XYZ") -> Machine:
     letters = axes.lower()
     if not letters or set(letters) - set(AXES) or len(set(letters)) < len(letters):
         raise MachineError(f"axes {axes!r}: give some of {AXES.upper()}, each once")
-    rotary = Axis(type="rotary_table", min=-1e9, max=1e9)
-    file = File("built-in", {a: Axis() if a in LINEAR else rotary for a in letters})
+    file = File("built-in", axes={a: axis_of(a, {}) for a in letters})
     return Machine(file, {i: Tool(i, slot=i) for i in range(1, 6)}, own_tools=False)
 
 
@@ -123,15 +222,11 @@ def load(folder: Path) -> Machine:
 
     path = folder / "machine.toml"
     try:
-        file = msgspec.convert(tomllib.loads(path.read_text("utf-8")), File)
+        file = parse(tomllib.loads(path.read_text("utf-8")))
     except OSError as error:
         raise MachineError(f"{path}: {error.strerror}") from None
-    except (ValueError, msgspec.ValidationError) as error:
+    except ValueError as error:
         raise MachineError(f"{path}: {error}") from None
-    axes = {letter.lower(): axis for letter, axis in file.axes.items()}
-    if unknown := set(axes) - set(AXES):
-        raise MachineError(f"{path}: axes are {AXES.upper()}, not {', '.join(sorted(unknown)).upper()}")
-    file = msgspec.structs.replace(file, axes=axes or {a: Axis() for a in LINEAR})
     own = folder / "tools.toml"
     tools = load_tools(own) if own.exists() else {}
     machine = Machine(file, tools, own.exists(), [folder / "macros"], folder)
@@ -144,8 +239,75 @@ def load(folder: Path) -> Machine:
 def load_tools(path: Path) -> dict[int, Tool]:
     """The tools of a tools.toml by id. Raises MachineError."""
     try:
-        return tool_library.parse(path.read_text("utf-8"))
+        tools = tool_library.parse(path.read_text("utf-8"))
     except OSError as error:
         raise MachineError(f"{path}: {error.strerror}") from None
     except (ValueError, msgspec.ValidationError) as error:
         raise MachineError(f"{path}: {error}") from None
+    for tool in tools.values():
+        for field, value in msgspec.structs.asdict(tool).items():
+            if isinstance(value, float) and not math.isfinite(value):
+                raise MachineError(f"{path}: tool {tool.id}: {field} must be a finite number, not {value}")
+    return tools
+
+
+# --- reading machine.toml
+
+
+def parse(tables: dict[str, Any]) -> File:
+    """The machine that the tables of a machine.toml describe. Raises ValueError naming the field."""
+    given = tables.get("axes", {})
+    if not isinstance(given, dict):
+        raise ValueError("axes: write a table for each axis: [axes.X]")
+    axes: dict[str, Axis] = {}
+    for name, settings in given.items():
+        letter = name.lower()
+        if len(letter) != 1 or letter not in AXES + AUXILIARY:
+            raise ValueError(f"axes.{name}: axes are {', '.join((AXES + AUXILIARY).upper())}")
+        if letter in axes:
+            raise ValueError(f"axes.{name}: the axis stands twice")
+        axes[letter] = axis_of(letter, settings, f"axes.{name}")
+    if not set(axes) & set(AXES):
+        axes |= {letter: Axis() for letter in LINEAR}
+    return converted({**tables, "axes": axes}, File)
+
+
+def axis_of(letter: str, settings: Any, name: str = "") -> Axis:
+    """An axis from its table; what is left out follows from the letter.
+
+    A, B and C are rotary tables without limits, turning about X, Y and Z.
+    name: of the table, for messages. Raises ValueError naming the field.
+    """
+    if not isinstance(settings, Mapping):
+        raise ValueError(f"{name}: write a table: [{name}]")
+    made: dict[str, Any] = {"type": "linear", **settings}
+    if letter in ROTARY:
+        made = {"type": "rotary_table", "parallel_to": "XYZ"[ROTARY.index(letter)], **settings}
+    if str(made["type"]).startswith("rotary"):
+        made = {"min": -UNBOUNDED, "max": UNBOUNDED, **made}
+    return converted(made, Axis, name)
+
+
+Shape = TypeVar("Shape", bound=msgspec.Struct)
+
+
+def converted(tables: Mapping[str, Any], shape: type[Shape], name: str = "") -> Shape:
+    """Tables as a structure. Raises ValueError that begins with the field's whole name."""
+    try:
+        return msgspec.convert(tables, shape)
+    except msgspec.ValidationError as error:
+        reason, _, place = str(error).partition(" - at `$")
+        path = place.rstrip("`").lstrip(".")
+        where = ".".join(filter(None, (name, path)))
+        if reason.startswith("Invalid enum value") and (choices := choices_of(shape, path)):
+            reason = f"{reason.removeprefix('Invalid enum value ')} is not one of {', '.join(map(str, choices))}"
+        elif re.search(r"e\+308$", reason):
+            reason = "Expected a finite number"
+        raise ValueError(f"{where}: {reason}" if where else reason) from None
+
+
+def choices_of(shape: Any, path: str) -> tuple[Any, ...]:
+    """The values that the field at a path may have."""
+    for field in path.split("."):
+        shape = get_type_hints(shape).get(field)
+    return get_args(shape)
