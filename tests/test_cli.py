@@ -248,3 +248,28 @@ def test_help_and_check_load_nothing_heavy(good: Path) -> None:
         done = subprocess.run([sys.executable, "-c", code.format(args)], capture_output=True, text=True)
         for heavy in ("'numpy'", "'matplotlib'", "'rich'", "'sqlite3'"):
             assert heavy not in done.stdout, heavy
+
+
+def test_a_machine_folder_remembers_changed_tools(tmp_path: Path) -> None:
+    (tmp_path / "machine.toml").write_text('name = "mill"\n')
+    (tmp_path / "tools.toml").write_text("[[tools]]\nid = 1\nz = 50\n\n[[tools]]\nid = 2\n")
+    program = tmp_path / "p.ngc"
+    program.write_text("G10 L1 P1 Z60 D6\nG10 L1 P3 Z30\nM2\n")
+    invoke("run", program, "--machine", tmp_path)
+    from aircut.machine import load
+
+    tools = load(tmp_path).tools
+    assert (tools[1].z, tools[1].diameter, tools[3].z) == (60.0, 6.0, 30.0)
+    assert sorted(tools) == [1, 2, 3]
+
+
+def test_encrypted_macros(tmp_path: Path) -> None:
+    macro, program = tmp_path / "g212.ngc", tmp_path / "p.ngc"
+    macro.write_text("G0 X[#24 * 2]\nM99\n")
+    program.write_text("G212 X4\nM2\n")
+    invoke("encrypt", macro, "-o", tmp_path / "g212.ngx", "--key", "secret")
+    macro.unlink()
+    listing = invoke("run", program, "--macros", tmp_path, "--key", "secret", "--format", "canon")
+    assert "STRAIGHT_TRAVERSE(8.0000" in listing
+    assert "encrypted-macro" in invoke("check", program, "--macros", tmp_path, "--key", "wrong", status=1)
+    assert "no key is given" in invoke("check", program, "--macros", tmp_path, status=1)

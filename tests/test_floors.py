@@ -9,9 +9,11 @@ SOURCE = Path(__file__).parent.parent / "src" / "aircut"
 FLOORS = {
     "kernels": 0,
     "geometry": 0,
+    "files": 0,
     "source": 1,
     "diagnostics": 1,
     "canon": 1,
+    "markup": 1,
     "language": 2,
     "machine": 3,
     "interpreter": 4,

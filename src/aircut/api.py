@@ -44,7 +44,9 @@ class CanonicalCommand(NamedTuple):
 class Message(NamedTuple):
     """A message to the operator."""
 
-    text: str
+    text: str  # with the document's tags; aircut.markup renders it
+    kind: int  # the Q word
+    medium: str  # text, or media: then the text names a picture
     line: int
     file: str
 
@@ -86,7 +88,8 @@ class Result:
     @property
     def messages(self) -> list[Message]:
         """What the operator was told."""
-        return [Message(e.values[0], e.line, self.files[e.file]) for e in self.events if e.name == "MESSAGE"]
+        found = [(event.values, event.line, self.files[event.file]) for event in self.events if event.name == "MESSAGE"]
+        return [Message(text, kind, medium, line, file) for (text, kind, medium), line, file in found]
 
     @property
     def extents(self) -> Extents | None:

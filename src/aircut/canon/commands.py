@@ -19,6 +19,7 @@ class Command(NamedTuple):
     form: str  # %-template of what stands between the parentheses
     meaning: str
     fields: tuple[str, ...] = ()  # names of its values
+    listed: bool = True  # in the canonical listing; False: aircut's own, for other faces
     scale: Callable[[tuple[Any, ...], float], tuple[Any, ...]] | None = None  # values, mm per program unit
 
 
@@ -33,7 +34,12 @@ def lengths(*at: int) -> Callable[[tuple[Any, ...], float], tuple[Any, ...]]:
 
 
 def command(name: str, form: str = "", meaning: str = "", fields: str = "", scale: Any = None) -> Command:
-    return Command(name, form, meaning, tuple(fields.split()), scale)
+    return Command(name, form, meaning, tuple(fields.split()), True, scale)
+
+
+def own(name: str, meaning: str, fields: str) -> Command:
+    """A command of aircut's own: not in the listing."""
+    return Command(name, "", meaning, tuple(fields.split()), False)
 
 
 COMMANDS = {
@@ -101,7 +107,33 @@ COMMANDS = {
         command("FINISH"),
         command("ON_RESET"),
         command("COMMENT", '"%s"', "a comment of the program or of the interpreter", "text"),
-        command("MESSAGE", '"%s"', "a message to the operator", "text"),
+        command(
+            "MESSAGE",
+            '"%s"',
+            "a message to the operator; kind is the Q word, medium text or media",
+            "text kind medium",
+            lambda values, unit: values[:1],
+        ),
+        command("TURN_PROBE_ON"),
+        command("TURN_PROBE_OFF"),
+        command(
+            "SET_TOOL_TABLE_ENTRY",
+            "%d, %d, %.4f %.4f %.4f %.4f %.4f %.4f %.4f %.4f %.4f, %.4f, %.4f, %d",
+            "tool table entry: slot, tool, offsets, angles, orientation",
+            "slot tool x y z a b c u v w front back orientation",
+            lengths(2, 3, 4),
+        ),
+        command("SET_MOTION_OUTPUT_BIT", "%d", "output on", "output"),
+        command("CLEAR_MOTION_OUTPUT_BIT", "%d", "output off", "output"),
+        command("SET_AUX_OUTPUT_VALUE", "%d,%f", "analog output, percent", "output value"),
+        own("WAIT_INPUT", "wait for an input (M66, M67): L word, seconds (-1: without limit)", "input mode timeout"),
+        own("PLC_CALL", "G100 and its arguments", "arguments"),
+        own("INTERPOLATED_AXES", "G101: axes by bits", "mask"),
+        own("HOME_AXES", "G102: axes by bits", "mask"),
+        own("SET_TRAVERSE_RATE", "G103: highest rapid, mm/min; 0 none", "rate"),
+        own("SET_DYNAMICS", "G104: mm/s², mm/s², percent; 0 the axes' own", "acceleration deceleration jerk"),
+        own("TORCH_HEIGHT_CONTROL", "M17 1, M18 0", "on"),
+        own("TOOL_CHANGE_MACRO", "M107 1, M108 0", "running"),
     )
 }
 

@@ -35,7 +35,7 @@ def check(files: Sequence[Path], style: str, output: Path | None, options: dict[
 def write(
     diagnostics: Sequence[Diagnostic], style: str, output: Path | None, interpreters: Sequence[Interpreter]
 ) -> None:
-    from aircut.export.files import replacing
+    from aircut.files import replacing
 
     lines = common.lines_of(*interpreters)
     if style == "text":

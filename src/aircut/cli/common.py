@@ -15,7 +15,7 @@ from aircut import dialects
 from aircut.diagnostics import Diagnostic, Severity, Span
 from aircut.diagnostics import faults as F
 from aircut.interpreter.interpreter import Interpreter, Limits, Settings
-from aircut.machine import Machine, MachineError, built_in, config, load, memory
+from aircut.machine import Machine, MachineError, built_in, load, memory
 from aircut.source import Source
 
 PATIENCE = 1.0  # seconds of work before progress is shown
@@ -32,8 +32,11 @@ def machine(options: dict[str, Any]) -> Machine:
         else:
             made = built_in(options["axes"] or "XYZ")
         made.macros = (*options["macros"], *made.macros)
+        made.key = options["key"]
         if options["tools"]:
-            made.tools = config.load_tools(options["tools"])
+            from aircut.machine.imports import read_tools
+
+            made.tools = read_tools(options["tools"])
             made.own_tools = True
         if options["parameters"]:
             known = (*memory.PERSISTENT, *memory.GIVEN)
@@ -80,7 +83,9 @@ def remember(options: dict[str, Any], made: Machine, finished: Interpreter) -> N
         if options["parameters"]:
             memory.write_parameters(options["parameters"], kept)
         elif made.folder:
-            memory.remember(made.folder, kept)
+            tools = finished.state.tools
+            changed = {id: tool for id, tool in tools.items() if made.library.get(id) != tool}
+            memory.remember(made.folder, kept, changed)
     except (OSError, MachineError) as error:
         raise click.ClickException(f"cannot store the machine's variables: {error}") from None
 

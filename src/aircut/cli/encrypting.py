@@ -34,7 +34,7 @@ def decrypt(file: Path, output: Path, key: str | None) -> int:
 
 def convert(file: Path, output: Path, key: str | None, change: Callable[[bytes, str], bytes], new: bool) -> int:
     """Read, change, write whole or not at all. new: the key is being chosen, so it is asked for twice."""
-    from aircut.export.files import replacing
+    from aircut.files import replacing
 
     try:
         if output.exists() and output.samefile(file):

@@ -33,7 +33,8 @@ def machine_options(command: Any) -> Any:
         click.option("--parameters", type=FILE, metavar="FILE.var",
                      help="Variables to start from; rewritten after a run."),
         click.option("--tools", type=click.Path(path_type=Path, dir_okay=False, exists=True), metavar="FILE",
-                     help="Tool library (tools.toml)."),
+                     help="Tool library: tools.toml, LinuxCNC's .tbl, or Fusion 360's JSON."),
+        click.option("--key", envvar="AIRCUT_KEY", metavar="KEY", help="Key of encrypted macros (or AIRCUT_KEY)."),
         click.option("--macros", type=FOLDER, multiple=True, metavar="DIR", help="Folder of macro files; repeatable."),
         click.option("--axes", default=None, metavar="LETTERS", help="Axes of the built-in machine, as XYZA."),
         click.option("--machine", "folder", type=FOLDER, metavar="DIR", help="The machine's folder."),
@@ -52,6 +53,13 @@ def cli() -> None:
 @cli.command()
 @click.argument("file", type=FILE)
 @machine_options
+@click.option("--simulate", is_flag=True, help="Run against a virtual world: probe, inputs, operator.")
+@click.option(
+    "--world",
+    type=click.Path(path_type=Path, dir_okay=False, exists=True),
+    metavar="FILE.toml",
+    help="The world to simulate (else world.toml of the machine's folder).",
+)
 @click.option("--format", "style", type=click.Choice(FORMATS), default="summary", show_default=True)
 @click.option("-o", "--output", type=FILE, help="Write here instead of to the terminal.")
 def run(file: Path, style: str, output: Path | None, **options: Any) -> None:
@@ -84,6 +92,32 @@ def plot(file: Path, output: Path, **options: Any) -> None:
     from aircut.cli import plotting
 
     sys.exit(plotting.plot(file, output, options))
+
+
+KEY = click.option("--key", metavar="KEY", help="Key of the macro; else AIRCUT_KEY, else asked for.")
+OUTPUT = click.option("-o", "--output", type=FILE, required=True, help="The file to write.")
+
+
+@cli.command()
+@click.argument("file", type=FILE)
+@OUTPUT
+@KEY
+def encrypt(file: Path, output: Path, key: str | None) -> None:
+    """Encrypt a macro (FILE.ngc -o FILE.ngx): it can be run with the key, not read."""
+    from aircut.cli import encrypting
+
+    sys.exit(encrypting.encrypt(file, output, key))
+
+
+@cli.command()
+@click.argument("file", type=FILE)
+@OUTPUT
+@KEY
+def decrypt(file: Path, output: Path, key: str | None) -> None:
+    """Get the text of an encrypted macro back."""
+    from aircut.cli import encrypting
+
+    sys.exit(encrypting.decrypt(file, output, key))
 
 
 def main() -> None:

@@ -11,7 +11,7 @@ import click
 from aircut.cli import common
 from aircut.cli.running import collect
 from aircut.diagnostics import Diagnostic
-from aircut.export.files import replacing
+from aircut.files import replacing
 
 
 def plot(file: Path, output: Path, options: dict[str, Any]) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import click
 
@@ -13,6 +13,9 @@ from aircut.canon import Recording
 from aircut.cli import common
 from aircut.diagnostics import Diagnostic
 from aircut.interpreter.interpreter import Interpreter
+
+if TYPE_CHECKING:
+    from aircut.controller import Simulation
 
 
 def run(file: Path, style: str, output: Path | None, options: dict[str, Any]) -> int:
@@ -22,14 +25,15 @@ def run(file: Path, style: str, output: Path | None, options: dict[str, Any]) ->
     if isinstance(made, Diagnostic):
         common.show([made], lambda *_: "", sys.stderr)
         return 1
+    simulation = simulated(made, options)
     if output is None:
-        report(made, style, sys.stdout, options)
+        report(made, simulation, style, sys.stdout, options)
     else:
-        from aircut.export.files import replacing
+        from aircut.files import replacing
 
         try:
             with replacing(output) as out:
-                report(made, style, out, options)
+                report(made, simulation, style, out, options)
         except OSError as error:
             raise click.ClickException(f"cannot write {output}: {error.strerror}") from None
     if style != "json" or output is not None:
@@ -38,11 +42,26 @@ def run(file: Path, style: str, output: Path | None, options: dict[str, Any]) ->
     return int(made.failed)
 
 
-def report(made: Interpreter, style: str, out: IO[str], options: dict[str, Any]) -> None:
+def simulated(made: Interpreter, options: dict[str, Any]) -> Simulation | None:
+    """The run in a world, where one is wanted. Raises click.UsageError."""
+    if not (options["simulate"] or options["world"]):
+        return None
+    from aircut.controller import Simulation, World, WorldError, load
+
+    path = options["world"]
+    if path is None and options["folder"] and (options["folder"] / "world.toml").exists():
+        path = options["folder"] / "world.toml"
+    try:
+        return Simulation(made, load(path) if path else World())
+    except WorldError as error:
+        raise click.UsageError(str(error)) from None
+
+
+def report(made: Interpreter, simulation: Simulation | None, style: str, out: IO[str], options: dict[str, Any]) -> None:
     if style == "canon":
-        out.writelines(listing(made))
+        out.writelines(listing(made, simulation))
         return
-    result = collect(made)
+    result = collect(made, simulation)
     if style == "json":
         from aircut.export.report import to_json
 
@@ -53,24 +72,24 @@ def report(made: Interpreter, style: str, out: IO[str], options: dict[str, Any])
     summary(result, out)
 
 
-def listing(made: Interpreter) -> Iterable[str]:
+def listing(made: Interpreter, simulation: Simulation | None) -> Iterable[str]:
     """The canonical listing, written as the run goes."""
     from aircut.export.listing import Listing
 
     text = Listing(lambda file, line: made.units[made.files[file]].source.raw(line - 1))
     with common.progress(f"running {Path(made.files[0]).name}") as advance:
-        for chunk in made.run():
+        for chunk in (simulation or made).run():
             yield from text.write(chunk)
             advance(made.line, len(made.unit.source))
 
 
-def collect(made: Interpreter) -> Any:
+def collect(made: Interpreter, simulation: Simulation | None = None) -> Any:
     """The Result of a run."""
     from aircut.api import Result
 
     recording = Recording()
     with common.progress(f"running {Path(made.files[0]).name}") as advance:
-        for chunk in made.run():
+        for chunk in (simulation or made).run():
             recording.add(chunk)
             advance(made.line, len(made.unit.source))
     recording.files = made.files

@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from aircut import markup
 from aircut.cli.common import totals
 from aircut.export.report import figures
 
@@ -65,6 +66,6 @@ def lines(result: Result, numbers: dict[str, Any]) -> list[tuple[str, str]]:
         rows.append(("stops", f"{counts['stops']:,}, waiting for the operator"))
     if numbers["dwell_seconds"]:
         rows.append(("dwell", f"{numbers['dwell_seconds']:g} s"))
-    rows += [("message", message.text) for message in result.messages]
+    rows += [("message", markup.plain(markup.parse(message.text))) for message in result.messages if message.text]
     rows.append(("faults", totals(result.diagnostics) or "none"))
     return rows

@@ -49,6 +49,16 @@ class Diagnostic(NamedTuple):
         place = f"{self.file}:{self.span.line}:{max(self.span.column, 1)}" if self.span.line else self.file
         return f"{place}: {self.severity.value} {self.code}: {self.message}"
 
+    def vendor(self) -> str:
+        """As the vendor's controller writes it: `[E0345] in line 40 (G390, line 532) - text` (003, section 2.2).
+
+        The first line is that of the main program; name and second line are those of the macro.
+        """
+        if not self.stack:
+            return f"[{self.code}] in line {self.span.line} - {self.message}"
+        macro = self.stack[-1].name.removesuffix(".ngc").removesuffix(".ngx").upper()
+        return f"[{self.code}] in line {self.stack[0].line} ({macro}, line {self.span.line}) - {self.message}"
+
 
 class Fault(NamedTuple):
     """A kind of fault."""

@@ -130,6 +130,7 @@ OUTPUT_LIMIT = Fault(
 NO_SUBROUTINE = Fault("no-subroutine", "there is no subroutine {name}", "{hint}")
 DUPLICATE_SUBROUTINE = Fault("duplicate-subroutine", "subroutine {name} is defined in line {line} already")
 NO_SUBROUTINE_END = Fault("no-subroutine-end", "subroutine {name} runs to the end without M99, ENDSUB or RETURN")
+ENCRYPTED = Fault("encrypted-macro", "the encrypted macro {name} cannot be read: {reason}")
 BAD_FILE_NAME = Fault(
     "bad-file-name", "{name} is no macro file name", "macros lie in the macros folders, without a path"
 )
@@ -167,6 +168,22 @@ SPINDLE_LIMIT = Fault(
     "spindle-limit", "S{speed:g} is above the spindle's maximum: {limit:g} rpm is used", severity=WARNING
 )
 NO_PROGRAM_END = Fault("no-program-end", "the program has no M2 or M30: it ends here without a reset", severity=WARNING)
+PROBE_COMPENSATION = Fault("E0048", "cannot probe with cutter radius compensation", "program G40 before")
+PROBE_INVERSE_TIME = Fault("E0047", "cannot probe in inverse time feed mode", "program G94 and F before")
+PROBE_NO_FEED = Fault("E0049", "cannot probe with zero feed rate", "program F before")
+PROBE_ROTARY = Fault("E0044", "cannot move rotary axes during probing")
+PROBE_TOO_CLOSE = Fault("E0162", "start point too close to probe point", "probe over 0.254 mm at least")
+PROBE_FAILED = Fault("probe-failed", "probing failed: {reason}", "G38.3 and G38.5 go on and report in #5700")
+USER_ERROR = Fault("E0345", "{text}", why="The program itself says that it cannot go on (M109 Q-1, M120 Q-1).")
+OPERATOR_STOP = Fault("operator-stop", "the operator pressed Stop: {text}")
+INPUT_TIMEOUT = Fault("input-timeout", "{what} {number} did not change within {seconds:g} s")
+SLOT_KEPT = Fault("slot-kept", "tool {tool} is in the table, so it stays in slot {slot}", severity=WARNING)
+SLOT_TAKEN = Fault("slot-taken", "slot {slot} holds another tool")
+TOOL_NOT_DECLARED = Fault(
+    "tool-not-declared",
+    "the tool change macro ended without M61 or M106: tool {tool} is still in the spindle",
+    severity=WARNING,
+)
 UNKNOWN_PARAMETER = Fault("unknown-parameter", "G10 L{l:g} is not a code of this language")
 
 FAULTS: dict[str, Fault] = {fault.code: fault for fault in list(globals().values()) if isinstance(fault, Fault)}

@@ -62,11 +62,11 @@ class Listing:
         event = next(events, None)
         for at, row in enumerate(ROW.iter_unpack(chunk.rows), chunk.first):
             while event is not None and event.at <= at:
-                yield self.event(event)
+                yield from self.event(event)
                 event = next(events, None)
             yield self.move(row)
         while event is not None:
-            yield self.event(event)
+            yield from self.event(event)
             event = next(events, None)
 
     def line(self, file: int, line: int, text: str) -> str:
@@ -78,14 +78,16 @@ class Listing:
                 self.labels[file, line] = known
         return "%5d %s%s\n" % (self.count, known, text)
 
-    def event(self, event: Event) -> str:
+    def event(self, event: Event) -> Iterator[str]:
         track = self.track.get(event.name)
         if track is not None:
             track(event)
         row = COMMANDS[event.name]
+        if not row.listed:
+            return
         values = row.scale(event.values, self.unit) if row.scale else event.values
         text = f"{WRITTEN.get(event.name, event.name)}({row.form % values})"
-        return self.line(event.file, event.line, text)
+        yield self.line(event.file, event.line, text)
 
     def move(self, row: tuple[float, ...]) -> str:
         unit = self.unit

@@ -80,6 +80,7 @@ def arrange(rows: Sequence[Code], letters: Sequence[str], motion: Code | None, d
         rows = [row for row in rows if not row.fits]  # nothing moves that they could modify
     supported(takers)
     items = [dialect.items[letter] for letter in letters if letter in dialect.items]
+    supported(items)
     used(rows, letters, dialect)
     missing(rows, present)
     if takers and takers[0].needs_axes and not axis_letters:
@@ -125,7 +126,7 @@ def implied(rows: Sequence[Code], motion: Code | None, dialect: Dialect, axis_le
     if any(row.weak for row in rows):
         raise Refusal(F.G80_AXES, word)
     for row in rows:
-        if row.alone and (motion is None or motion.name not in row.fits):
+        if row.alone:
             return dialect.codes[row.alone]._replace(modal=False)
     if motion is None or motion.weak:
         raise Refusal(F.NO_MOTION_MODE, word)

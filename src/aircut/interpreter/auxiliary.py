@@ -6,13 +6,18 @@ AMB-TC-5 to AMB-TC-7, AMB-VAR-10.
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from aircut.diagnostics import Refusal, Severity
 from aircut.diagnostics import faults as F
+from aircut.interpreter.calls import Call
+from aircut.interpreter.requests import Pause, Request
 from aircut.interpreter.state import State, out_of_range, whole
 from aircut.interpreter.table import Code, Group, Order, Words
+
+PALLET_SHUTTLE = "pallet_shuttle.ngc"
 
 
 class End(NamedTuple):
@@ -53,7 +58,7 @@ def known_tool(m: State, w: Words, letter: str) -> int:
     tool = whole(w, letter)
     if not 0 <= tool < 2**31:
         raise out_of_range(w, letter, "tools are whole numbers from 0")
-    if m.machine.tool(tool) is None:
+    if tool and tool not in m.tools:
         if m.machine.own_tools:
             raise Refusal(F.UNKNOWN_TOOL._replace(severity=Severity.ERROR, hint=""), letter, tool=tool)
         m.warn(F.UNKNOWN_TOOL, letter, tool=tool)
@@ -66,27 +71,25 @@ def select_tool(m: State, w: Words) -> None:
     m.out.event("SELECT_TOOL", m.selected_tool)
 
 
-def change_tool(m: State, w: Words) -> None:
-    """M6 by the controller itself: the spindle stops and the selected tool is loaded."""
-    m.out.event("START_CHANGE")
-    m.spindle = 5
-    m.out.event("STOP_SPINDLE_TURNING", 0)
-    m.tool = m.selected_tool
-    m.tool_code = 6.0
-    m.out.event("CHANGE_TOOL", m.tool)
-
-
-def declare_tool(m: State, w: Words) -> None:
-    """M61 Q: the tool in the spindle, without a change."""
-    m.tool = known_tool(m, w, "q")
-    m.out.event("CHANGE_TOOL_NUMBER", m.tool)
-
-
-def stop(number: int, command: str, m: State, w: Words) -> None:
+def stop(number: int, command: str, m: State, w: Words) -> Generator[Request, Any, None]:
     """M0, M1: wait for the operator. #5150 does not know M1."""
     if number == 0:
         m.stop_code = 0.0
     m.out.event(command)
+    yield Pause(optional=number == 1)
+
+
+def shuttle(m: State, w: Words) -> None:
+    """M60: the pallet shuttle, by the macro where the machine has one."""
+    m.stop_code = 60.0
+    m.out.event("PALLET_SHUTTLE")
+    if m.machine.options.pallet_shuttle:
+        m.transfer = Call(PALLET_SHUTTLE, False, 1, None, file=True)
+
+
+def torch(on: bool, m: State, w: Words) -> None:
+    """M17, M18: torch height control."""
+    m.out.event("TORCH_HEIGHT_CONTROL", int(on))
 
 
 def end(number: int, reset: bool, m: State, w: Words) -> None:
@@ -94,6 +97,8 @@ def end(number: int, reset: bool, m: State, w: Words) -> None:
     if reset:
         m.stop_code = float(number)
     m.transfer = End(reset)
+    if number == 30 and m.machine.options.pallet_shuttle:
+        m.transfer = Call(PALLET_SHUTTLE, False, 1, None, then=m.transfer, file=True)
 
 
 def restart(m: State, w: Words) -> None:
@@ -115,11 +120,12 @@ CODES = (
     cool("M7", "Mist on", partial(coolant, True, None), Group.MIST),
     cool("M8", "Flood on", partial(coolant, None, True), Group.FLOOD),
     cool("M9", "Mist and flood off", partial(coolant, False, False), Group.MIST | Group.FLOOD),
-    Code("M6", "Tool change", change_tool, Group.TOOL, Order.TOOL_CHANGE),
-    Code("M61", "Declare the loaded tool", declare_tool, Group.TOOL, Order.TOOL_CHANGE, takes="q", needs="q"),
     halt("M0", "Stop", partial(stop, 0, "PROGRAM_STOP")),
     halt("M1", "Optional stop", partial(stop, 1, "OPTIONAL_PROGRAM_STOP")),
     halt("M2", "Program end", partial(end, 2, True)),
+    halt("M60", "Pallet shuttle", shuttle),
+    cool("M17", "Torch height control on", partial(torch, True), Group.TORCH),
+    cool("M18", "Torch height control off", partial(torch, False), Group.TORCH),
     halt("M30", "Pallet shuttle and program end", partial(end, 30, True)),
     halt("M47", "Start the program over", restart),
     halt("M102", "Program end without a reset", partial(end, 102, False)),

@@ -5,6 +5,7 @@ Sources: 000 sections 2.5, 3.3, 3.4; decisions AMB-CALL-1 to AMB-CALL-14.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, NamedTuple
 
 from aircut.diagnostics import Refusal
@@ -26,6 +27,14 @@ class Call(NamedTuple):
     numbered: bool
     repeat: int
     arguments: dict[str, float] | None
+    numbers: tuple[float, ...] = ()  # values for #1, #2 … that are no arguments: a tool change macro's
+    then: Any = None  # the transfer that follows when it has come back
+    file: bool = False  # only a macro file is meant, not a subroutine of the calling file
+
+    @property
+    def own_locals(self) -> bool:
+        """Whether it opens a new level of #1 to #33."""
+        return self.arguments is not None or bool(self.numbers)
 
 
 class Return(NamedTuple):
@@ -72,14 +81,47 @@ def macro(m: State, w: Words) -> None:
     m.transfer = Call(name, numbered, repeats(w), arguments)
 
 
+def modal_macro(m: State, w: Words) -> None:
+    """G66 P L and arguments: call the macro after each block that moves an axis, until G67."""
+    macro(m, w)
+    m.macro, m.transfer = m.transfer, None
+    m.macro_level = m.calls
+    m.macro_count = 0
+    m.motion = m.dialect.codes["g1" if m.macro_motion else "g0"]
+
+
+def no_modal_macro(m: State, w: Words) -> None:
+    """G67."""
+    m.macro = None
+    m.motion = m.modal[Group.MOTION]
+
+
+def custom(name: str, m: State, w: Words) -> None:
+    """G200 to G499, M200 to M299: the macro file of that name, with arguments."""
+    for letter in "pl":
+        if letter in w:
+            raise Refusal(F.UNUSED_WORD, letter, word=letter.upper())
+    arguments = {letter: value for letter, value in w.items() if letter in ARGUMENTS and value is not None}
+    m.transfer = Call(f"{name}.ngc", False, 1, arguments, file=True)
+
+
 def back(m: State, w: Words) -> None:
     """M99."""
     m.transfer = Return()
+
+
+def user(name: str) -> Code:
+    """The row of a user defined code."""
+    return Code(name, "User defined code", partial(custom, name.lower()), Group.NON_MODAL, Order.CALL, sole=True)
 
 
 CODES = (
     Code("M98", "Call a subroutine", call, Group.CALL, Order.CALL, takes="pl", needs="p"),
     Code("M99", "Return from a subroutine", back, Group.RETURN, Order.RETURN),
     Code("G65", "Call a macro with arguments", macro, Group.NON_MODAL, Order.CALL, needs="p", sole=True),
+    Code("G66", "Modal macro call", modal_macro, Group.MACRO, Order.CALL, needs="p", sole=True),
+    Code("G67", "Modal macro call off", no_modal_macro, Group.MACRO, Order.CALL),
+    *(user(f"G{number}") for number in range(200, 500)),
+    *(user(f"M{number}") for number in range(200, 300)),
     Code("CALL", "Call a macro with arguments", macro, Group.NON_MODAL, Order.CALL, needs="p", sole=True),
 )

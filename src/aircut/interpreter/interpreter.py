@@ -17,13 +17,14 @@ from aircut.interpreter.compiling import FAILURES, explain
 from aircut.interpreter.requests import Request
 from aircut.interpreter.state import State
 from aircut.interpreter.table import Code, Dialect, Group, Words
+from aircut.interpreter.tooling import TOOL_CHANGE
 from aircut.interpreter.unit import Branch, Shape, Statement, Unit
 from aircut.kernels import scan
 from aircut.language.arithmetic import EQUAL, is_null
 from aircut.language.blocks import Block, parse
 from aircut.language.expressions import Number
 from aircut.language.structure import Routine
-from aircut.machine import Machine
+from aircut.machine import INSTALLED, Machine
 from aircut.source import Source
 
 FULL = CHUNK * ROW.size
@@ -31,7 +32,7 @@ PLAIN, BLANK = scan.PLAIN, scan.BLANK
 DEEPEST_CALL = 100
 WATCH = 64  # passes through a loop that are compared with one before
 EVALUATION = (*FAILURES, Refusal)
-FATAL = (F.BLOCK_BUDGET, F.ENDLESS_LOOP)
+FATAL = (F.BLOCK_BUDGET, F.ENDLESS_LOOP, F.USER_ERROR, F.PROBE_FAILED, F.INPUT_TIMEOUT, F.OPERATOR_STOP)
 UTF16 = (b"\xff\xfe", b"\xfe\xff")  # byte order marks
 SHAPE_WORD = re.compile(rb"([a-z])([\d.]*)")
 
@@ -129,7 +130,7 @@ class Interpreter:
                 yield item
 
     def execute(self) -> Generator[Chunk | Request, Any, None]:
-        """Run the program: yields its motion and events, and requests, to be sent their replies (None: not executed)."""
+        """Run the program: yields motion and events, and requests, to be sent replies (None: not executed)."""
         m = self.state
         starting.begin(m)
         self.check_structure(self.unit)
@@ -269,9 +270,10 @@ class Interpreter:
             raise Stopped
 
     def set_mode(self, row: Code) -> None:
-        self.state.modal[row.group] = row
-        if row.group is Group.MOTION:
-            self.state.motion = row
+        m = self.state
+        m.modal[row.group] = row
+        if row.group is Group.MOTION and (m.macro is None or m.calls != m.macro_level):
+            m.motion = row
 
     # --- blocks
 
@@ -537,8 +539,11 @@ class Interpreter:
         m.out.file = self.files.index(unit.source.name)
         m.scope = {}
         self.count(1, routine.first, routine.first)
-        if level.call.arguments is not None:
+        m.motion = m.modal[Group.MOTION]
+        if level.call.own_locals:
             m.locals = [None] * 34
+            m.locals[1 : 1 + len(level.call.numbers)] = level.call.numbers
+        if level.call.arguments is not None:
             for letter, value in level.call.arguments.items():
                 m.locals[ARGUMENTS[letter]] = value
                 m.scope[f"_args.{letter}"] = value
@@ -548,7 +553,7 @@ class Interpreter:
         """The subroutine of a name: in the calling file, then in the macros folders. Raises Refusal."""
         name = call.name.lower()
         routine = self.unit.structure.routines.get(name)
-        if routine is not None and (call.numbered or not macros.has_extension(call.name)):
+        if routine is not None and not call.file and (call.numbered or not macros.has_extension(call.name)):
             return self.unit, routine
         written = f"O{call.name}" if call.numbered else call.name
         unit = self.external(written)
@@ -562,15 +567,12 @@ class Interpreter:
 
     def external(self, name: str) -> Unit | None:
         """The unit of a macro file. Raises Refusal for names that are no file names."""
-        found = macros.find(name, self.machine.macros)
+        found = macros.find(name, (*self.machine.macros, INSTALLED))
         if found is None:
             return None
         key = str(found)
         if key not in self.units:
-            try:
-                source = Source.load(found)
-            except OSError as error:
-                raise Refusal(F.CANNOT_READ, "p", reason=error.strerror) from None
+            source = macros.load(found, self.machine.key)
             self.units[key] = Unit(source, self.dialect, self.settings.block_delete, self.settings.limits.line)
             self.files.append(key)
             self.check_structure(self.units[key])
@@ -587,15 +589,22 @@ class Interpreter:
         self.count(m.line - self.routine.first, self.routine.first, m.line - 1)
         if level.left > 1:
             self.stack.append(level._replace(left=level.left - 1))
-            if level.call.arguments is not None:
+            if level.call.own_locals:
                 m.locals = level.locals
             return self.enter(level, self.unit, self.routine)
-        if level.call.arguments is not None:
+        if level.call.own_locals:
             m.locals = level.locals
         m.scope = level.scope
         m.calls = len(self.stack)
+        if m.macro is not None and m.calls == m.macro_level:
+            m.motion = self.dialect.codes["g1" if m.macro_motion else "g0"]
+        if level.call.name == TOOL_CHANGE and not m.declared:
+            self.warn(F.TOOL_NOT_DECLARED, tool=m.tool)
         self.unit, self.routine = level.unit, level.routine
         m.out.file = self.files.index(level.unit.source.name)
+        if level.call.then is not None:
+            m.transfer = level.call.then
+            return self.follow(level.back)
         return level.back
 
     def run_off(self) -> int:

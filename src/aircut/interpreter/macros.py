@@ -10,8 +10,10 @@ from pathlib import Path
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.source import Source
 
 EXTENSION = ".ngc"
+ENCRYPTED = ".ngx"
 
 
 def has_extension(name: str) -> bool:
@@ -29,6 +31,15 @@ def find(name: str, folders: Iterable[Path]) -> Path | None:
     if not name or "/" in name or "\\" in name or ".." in name or "\0" in name:
         raise Refusal(F.BAD_FILE_NAME, "p", name=name)
     wanted = name if has_extension(name) else name + EXTENSION
+    folders = list(folders)
+    found = exact(wanted, folders)
+    if found is None and wanted.lower().endswith(EXTENSION):
+        found = exact(wanted[: -len(EXTENSION)] + ENCRYPTED, folders)
+    return found
+
+
+def exact(wanted: str, folders: Iterable[Path]) -> Path | None:
+    """The file of this name in the first folder that has it; one that differs in case will do."""
     for folder in folders:
         if (folder / wanted).is_file():
             return folder / wanted
@@ -37,3 +48,19 @@ def find(name: str, folders: Iterable[Path]) -> Path | None:
             if alike:
                 return alike[0]
     return None
+
+
+def load(path: Path, key: str | None) -> Source:
+    """The text of a macro file; an encrypted one is opened with the key. Raises Refusal."""
+    from aircut.machine import ngx
+
+    try:
+        if path.suffix.lower() != ENCRYPTED:
+            return Source.load(path)
+        if not key:
+            raise Refusal(F.ENCRYPTED, "p", name=path.name, reason="no key is given (--key, or AIRCUT_KEY)")
+        return Source(str(path), ngx.decrypt(path.read_bytes(), key))
+    except OSError as error:
+        raise Refusal(F.CANNOT_READ, "p", reason=error.strerror) from None
+    except ngx.NgxError as error:
+        raise Refusal(F.ENCRYPTED, "p", name=path.name, reason=str(error)) from None

@@ -117,11 +117,6 @@ def off(text: str, m: State, w: Words) -> None:
         comment(m, text)
 
 
-def no_tool_length(m: State, w: Words) -> None:
-    """G49."""
-    m.out.event("USE_TOOL_LENGTH_OFFSET", *[0.0] * 9)
-
-
 def overrides(on: bool, m: State, w: Words) -> None:
     """M48, M49: both overrides."""
     set_feed_override(m, int(on))
@@ -171,7 +166,6 @@ CODES = (
     mode("G20", "Inches", partial(units, INCH), Group.UNITS),
     mode("G21", "Millimeters", partial(units, 1.0), Group.UNITS),
     mode("G40", "Cutter compensation off", partial(off, "cutter radius compensation off"), Group.CUTTER),
-    mode("G49", "Tool length compensation off", no_tool_length, Group.TOOL_LENGTH),
     mode("G50", "Scaling off", partial(off, ""), Group.SCALING),
     mode("G61", "Exact path", exact_path, Group.PATH),
     mode("G61.1", "Exact stop", exact_stop, Group.PATH),

@@ -17,7 +17,7 @@ from aircut.interpreter.state import INCH, PLANES, State, out_of_range, whole
 from aircut.interpreter.table import AXES, Code, Group, Order, Words
 
 pack = ROW.pack
-TRAVERSE, FEED, ARC = int(Kind.TRAVERSE), int(Kind.FEED), int(Kind.ARC)
+TRAVERSE, FEED, ARC, PROBE = int(Kind.TRAVERSE), int(Kind.FEED), int(Kind.ARC), int(Kind.PROBE)
 NUMBERED_AXES = tuple(enumerate(AXES))
 LINEAR_AXES = NUMBERED_AXES[:3]
 ROTARY_AXES = NUMBERED_AXES[3:]
@@ -27,6 +27,7 @@ MISMATCH_SHARE = 0.001  # this part of the larger
 RADIUS_SLACK = 1e-4  # part of the chord by which an R may be too short
 SLOWEST = 0.1  # program units a minute: a lower inverse-time feed is told as this
 FAR = 1e9  # mm, degrees, mm/min: nothing reasonable is beyond
+SAME = 1e-9  # mm, degrees: positions nearer than this are one
 TINY = 1e-7  # mm: shorter linear moves count as rotary ones (canonical listing, section 14)
 
 
@@ -112,7 +113,16 @@ def traverse(m: State, w: Words) -> None:
     goal = target(m, w)
     if goal is not None:
         write(m, TRAVERSE, goal, 0.0, m.flags)
+        if m.macro is not None:
+            trigger(m)
     m.machine_frame = False
+
+
+def trigger(m: State) -> None:
+    """After a move under G66: call the macro, unless this is inside a call (AMB-CALL-9)."""
+    if m.calls == m.macro_level:
+        m.macro_count += 1
+        m.transfer = m.macro
 
 
 def feed(m: State, w: Words) -> None:
@@ -135,6 +145,8 @@ def feed(m: State, w: Words) -> None:
     else:
         speed = m.feed
     write(m, FEED, goal, speed, flags)
+    if m.macro is not None:
+        trigger(m)
 
 
 def arc(turn: int, m: State, w: Words) -> None:
@@ -158,8 +170,8 @@ def arc(turn: int, m: State, w: Words) -> None:
         center = center_by_words(m, w, turn, axes, here)
         check_radii(m, here, there, center)
     else:
-        plane = CENTER_WORDS[min(axes[:2])] + " and " + CENTER_WORDS[max(axes[:2])]
-        raise Refusal(F.ARC_NO_CENTER, code="G2" if turn < 0 else "G3", words=plane.upper())
+        plane = " and ".join(sorted(CENTER_WORDS[axis].upper() for axis in axes[:2]))
+        raise Refusal(F.ARC_NO_CENTER, code="G2" if turn < 0 else "G3", words=plane)
     flags = m.flags
     if m.exact_stop:
         flags |= EXACT_STOP
@@ -179,6 +191,8 @@ def arc(turn: int, m: State, w: Words) -> None:
         out.line, m.tool, turn * turns, out.file, ARC, m.plane, flags,
     )  # fmt: skip
     m.position = end
+    if m.macro is not None:
+        trigger(m)
 
 
 def turns_of(w: Words) -> int:
@@ -202,7 +216,7 @@ def center_by_words(
     if m.arc_absolute:
         for word in words:
             if word not in w:
-                wanted = " and ".join(sorted(words)).upper()
+                wanted = " and ".join(word.upper() for word in sorted(words))
                 raise Refusal(F.ARC_NO_CENTER, code="under G90.1, G2" if turn < 0 else "under G90.1, G3", words=wanted)
         return w[words[0]] * m.unit, w[words[1]] * m.unit
     return here[0] + w.get(words[0], 0.0) * m.unit, here[1] + w.get(words[1], 0.0) * m.unit
@@ -261,15 +275,20 @@ def cancel(m: State, w: Words) -> None:
 def go_home(stored: str, m: State, w: Words) -> None:
     """G28, G30: through the point given to the stored point, in the named axes or in all."""
     middle = target(m, w)
-    if middle is not None and middle != m.position:
+    if middle is not None and apart(middle, m.position):
         write(m, TRAVERSE, middle, 0.0, m.flags)
     home = getattr(m, stored)
     goal = m.position[:]
     for i, axis in NUMBERED_AXES:
         if axis in m.axes and (middle is None or axis in w):
             goal[i] = home[i] - m.offset[i] - m.tool_offset[i]
-    if goal != m.position:
+    if apart(goal, m.position):
         write(m, TRAVERSE, goal, 0.0, m.flags)
+
+
+def apart(goal: list[float], place: list[float]) -> bool:
+    """Whether two positions are different, but for what sums of offsets round."""
+    return any(abs(a - b) > SAME for a, b in zip(goal, place, strict=True))
 
 
 def store_home(stored: str, m: State, w: Words) -> None:

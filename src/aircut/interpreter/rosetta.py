@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from aircut.interpreter import auxiliary, calls, modes, motion, offsets
+from aircut.interpreter import auxiliary, calls, inputs, messages, modes, motion, offsets, probing, tooling
 from aircut.interpreter.arranging import code_name
 from aircut.interpreter.named import NAMED
 from aircut.interpreter.state import State
@@ -21,31 +21,19 @@ def unreachable(m: State, w: Words) -> None:
 
 later = partial(Code, run=unreachable, supported=False)
 cycle = partial(later, group=Group.MOTION, order=Order.MOTION, axes=True, takes="rlpq", modal=True)
-probe = partial(later, group=Group.MOTION, order=Order.MOTION, axes=True, modal=True)
 compensation = partial(later, group=Group.CUTTER, order=Order.CUTTER, takes="dil")
 length = partial(later, group=Group.TOOL_LENGTH, order=Order.TOOL_LENGTH, takes="h")
-group = partial(later, group=Group.NON_MODAL, order=Order.NON_MODAL)
-io = partial(later, group=Group.IO, order=Order.IO)
 
 #: Codes of the language that cannot be run yet: programs that use them are refused.
 LATER = (
     later("G16", "Polar coordinates", group=Group.POLAR, order=Order.POLAR),
-    probe("G38.2", "Probe toward contact, or fail"),
-    probe("G38.3", "Probe toward contact"),
-    probe("G38.4", "Probe away from contact, or fail"),
-    probe("G38.5", "Probe away from contact"),
     compensation("G41", "Cutter compensation left"),
     compensation("G41.1", "Dynamic cutter compensation left"),
     compensation("G42", "Cutter compensation right"),
     compensation("G42.1", "Dynamic cutter compensation right"),
-    length("G43", "Tool length compensation"),
-    length("G43.1", "Dynamic tool length compensation", axes=True),
-    length("G43.2", "Additional tool length compensation"),
     length("G43.4", "Tool center point control"),
     length("G43.7", "Tool center point control with own offsets", axes=True),
     later("G51", "Scaling", group=Group.SCALING, order=Order.SCALING, axes=True, takes="ijkp"),
-    later("G66", "Modal macro call", group=Group.MACRO, order=Order.CALL, sole=True),
-    later("G67", "Modal macro call off", group=Group.MACRO, order=Order.CALL),
     later("G68", "Rotation", group=Group.ROTATION, order=Order.ROTATION, axes=True, takes="r"),
     later("G68.2", "Tilted plane", group=Group.ROTATION, order=Order.ROTATION, axes=True, takes="ijk"),
     cycle("G73", "Drill, breaking chips"),
@@ -56,31 +44,25 @@ LATER = (
     cycle("G86", "Bore, spindle stop, rapid out"),
     cycle("G88", "Bore, spindle stop, manual out"),
     cycle("G89", "Bore, dwell, feed out"),
-    group("G100", "Call a PLC function", sole=True),
-    group("G101", "Axes to be interpolated", takes="p"),
-    group("G102", "Home axes", takes="p"),
-    group("G103", "Traverse rate", takes="v"),
-    group("G104", "Dynamics", takes="adj"),
-    *(group(f"G{number}", "User defined code", sole=True) for number in range(200, 500)),
-    *(group(f"M{number}", "User defined code", sole=True) for number in range(200, 300)),
-    later("M17", "Torch height control on", group=Group.TORCH, order=Order.COOLANT),
-    later("M18", "Torch height control off", group=Group.TORCH, order=Order.COOLANT),
-    later("M60", "Pallet shuttle", group=Group.STOP, order=Order.STOP),
-    io("M62", "Output on", takes="p"),
-    io("M63", "Output off", takes="p"),
-    io("M66", "Wait for an input", takes="plq"),
-    io("M67", "Read an analog input", takes="plq"),
-    io("M68", "Set an analog output", takes="pq"),
-    io("M166", "Read a group of inputs", takes="p"),
-    io("M167", "Read a group of analog inputs", takes="p"),
-    later("M106", "Internal tool change procedure", group=Group.TOOL, order=Order.TOOL_CHANGE),
-    later("M107", "Tool change macro starts", group=Group.TOOL_MACRO, order=Order.MACRO_START),
-    later("M108", "Tool change macro ends", group=Group.TOOL_MACRO, order=Order.MACRO_END),
-    later("M109", "Message", group=Group.MESSAGE, order=Order.MESSAGE, takes="pqrd"),
-    later("M120", "Media message", group=Group.MESSAGE, order=Order.MESSAGE, takes="pqrd"),
 )
 
-CODES = (*motion.CODES, *modes.CODES, *offsets.CODES, *auxiliary.CODES, *calls.CODES, *LATER)
+CODES = (
+    *motion.CODES,
+    *modes.CODES,
+    *offsets.CODES,
+    *tooling.CODES,
+    *auxiliary.CODES,
+    *inputs.CODES,
+    *messages.CODES,
+    *probing.CODES,
+    *calls.CODES,
+    *LATER,
+)
+
+POLAR = (
+    later("@", "Polar radius", group=Group(0), order=Order.POLAR),
+    later("^", "Polar angle", group=Group(0), order=Order.POLAR),
+)
 
 #: Named in the documents, or known from relatives of the language, but not in it (AMB-COD-2, AMB-CYC-3).
 UNSUPPORTED = frozenset(
@@ -125,12 +107,7 @@ RANGES = (
     Range(6000, 6999, "Protected variables: programs only read them", "table", writable=False),
 )
 
-SETTINGS = {
-    **offsets.SETTINGS,
-    1: group("G10 L1", "Tool table entry", takes="pdqijkv", axes=True),
-    10: group("G10 L10", "Tool table entry, calculated", takes="pdqijkv", axes=True),
-    100: group("G10 L100", "Special parameters", takes="pv"),
-}
+SETTINGS = {**offsets.SETTINGS, **tooling.SETTINGS, **messages.SETTINGS}
 
 
 def key(row: Code) -> str:
@@ -142,7 +119,7 @@ ROSETTA = Dialect(
     name="rosetta",
     title="RosettaCNC",
     codes={key(row): row for row in CODES},
-    items={row.name.lower(): row for row in (*modes.ITEMS, *auxiliary.ITEMS)},
+    items={row.name.lower(): row for row in (*modes.ITEMS, *auxiliary.ITEMS, *POLAR)},
     unsupported=UNSUPPORTED,
     ranges=RANGES,
     system=SYSTEM,

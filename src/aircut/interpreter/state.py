@@ -13,6 +13,7 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.language.arithmetic import EQUAL
 from aircut.machine import Machine
+from aircut.machine.tools import EMPTY
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -43,6 +44,7 @@ class State:
         self.shifted = False
         self.home = [0.0] * 6  # G28, machine axes
         self.second_home = [0.0] * 6  # G30
+        self.tools = dict(machine.tools)  # the run's own table
         self.tool_offset = [0.0] * 6
 
         self.modal: dict[Group, Code] = {}
@@ -66,12 +68,37 @@ class State:
         self.flood = False
         self.selected_tool = 0
         self.tool = 0
+        self.compensated_tool = EMPTY  # whose offset is in force
+        self.declared = False  # M61 or M106 since the last M6
+        self.changing = False  # between M107 and M108
         self.feed_override = 1
         self.speed_override = 1
         self.stop_code: float | None = None
         self.tool_code: float | None = None
         self.feed_override_code = 48.0
         self.speed_override_code = 48.0
+
+        self.outputs_on: frozenset[int] = frozenset()
+        self.interpolated = 0  # axes by bits, G101
+        self.traverse_rate = 0.0  # mm/min, G103
+        self.acceleration = 0.0  # mm/s², G104
+        self.deceleration = 0.0
+        self.jerk = 100.0  # percent
+
+        self.probe_state: float | None = None  # #5700
+        self.probed: list[float | None] = [None] * 6
+        self.probed_machine: list[float | None] = [None] * 6
+        self.input_value: float | None = None  # #5720
+        self.answer: float | None = None  # #5721
+        self.waited: float | None = None  # #5722
+        self.entered: list[float | None] = [None] * 10  # #5730 to #5739
+        self.input_group: list[float | None] = [None] * 20  # #5740 to #5759
+        self.macro: Any = None  # the Call of G66
+        self.macro_level = 0  # depth of calls at which G66 was given
+        self.macro_count = 0  # #5148
+        self.macro_motion = 0  # #5800
+        self.rotary_modulus = 360.0
+        self.rotary_modes = [0.0, 0.0, 0.0]
 
         self.locals: list[float | None] = [None] * 34
         self.numbered: list[float | None] = [None] * 7000

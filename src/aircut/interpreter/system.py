@@ -13,6 +13,7 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.state import WORK_SYSTEMS, State
 from aircut.interpreter.table import Group, SystemVariable
+from aircut.machine.tools import EMPTY
 
 Read = Callable[[State, int], float | None]
 
@@ -20,10 +21,6 @@ Read = Callable[[State, int], float | None]
 def null(m: State, i: int) -> None:
     """Before the first event that fills it (AMB-VAR-16)."""
     return
-
-
-def zero(m: State, i: int) -> float:
-    return 0.0
 
 
 def code(group: Group) -> Read:
@@ -58,8 +55,7 @@ def slot(name: str) -> Read:
     """Slot of a tool of the state."""
 
     def read(m: State, i: int) -> float:
-        tool = m.machine.tool(getattr(m, name))
-        return float(tool.slot) if tool else 0.0
+        return float(m.tools.get(getattr(m, name), EMPTY).slot)
 
     return read
 
@@ -68,8 +64,7 @@ def tool_data(*names: str) -> Read:
     """Data of the tool in the spindle; zeros for one that the library does not know."""
 
     def read(m: State, i: int) -> float:
-        tool = m.machine.tool(m.tool)
-        return float(getattr(tool, names[i])) if tool else 0.0
+        return float(getattr(m.tools.get(m.tool, EMPTY), names[i]))
 
     return read
 
@@ -110,6 +105,10 @@ SYSTEM = (
     one(5113, "Path mode", code(Group.PATH)),
     one(5116, "Rotation", code(Group.ROTATION)),
     one(5117, "Polar coordinates", code(Group.POLAR)),
+    one(5120, "Interpolated axes by bits (G101)", attribute("interpolated")),
+    one(5127, "Jerk, percent (G104 J)", attribute("jerk")),
+    one(5128, "Acceleration along the path (G104 A)", attribute("acceleration"), "length"),
+    one(5129, "Deceleration along the path (G104 D)", attribute("deceleration"), "length"),
     one(5130, "Feed rate F, program units", feed),
     one(5131, "Spindle speed S", attribute("speed")),
     one(5132, "Selected tool", attribute("selected_tool")),
@@ -118,9 +117,11 @@ SYSTEM = (
     one(5135, "Slot of the tool in the spindle", slot("tool")),
     one(5136, "Feed override mode (M50 P)", attribute("feed_override")),
     one(5137, "Spindle override mode (M51 P)", attribute("speed_override")),
-    one(5139, "Tool change macro running", zero),
+    one(5138, "Traverse rate (G103)", attribute("traverse_rate"), "length"),
+    one(5139, "1 while the tool change macro runs (M107)", attribute("changing")),
     one(5140, "Blend tolerance (G64 P)", attribute("blend"), "length"),
     one(5141, "Point removal (G64 Q)", attribute("thinning"), "length"),
+    one(5148, "Calls of the modal macro so far", attribute("macro_count")),
     one(5149, "1 in a subroutine", lambda m, i: float(m.calls > 0)),
     one(5150, "Last stop code", attribute("stop_code")),
     one(5151, "Spindle code", attribute("spindle")),
@@ -147,9 +148,17 @@ SYSTEM = (
     one(5411, "Type of the tool in the spindle", tool_data("type")),
     SystemVariable(5412, 5414, "Parameters 1 to 3 of the tool in the spindle", tool_data("p1", "p2", "p3")),
     *axes(5420, "Tool offset in force", lambda axis: element("tool_offset", axis)),
-    SystemVariable(5700, 5700, "State of the last probing", null),
-    SystemVariable(5701, 5706, "Probed position, work system", null),
-    SystemVariable(5711, 5716, "Probed position, machine coordinates", null),
-    SystemVariable(5720, 5722, "Answers of M66, M109 and M120", null),
-    SystemVariable(5730, 5759, "Values entered by the operator, and read inputs", null),
+    one(5426, "Tool whose offset is in force", lambda m, i: float(m.compensated_tool.id)),
+    one(5427, "Type of that tool", lambda m, i: float(m.compensated_tool.type)),
+    one(5700, "State of the last probing: 1, -1, -2; null: only compiled", attribute("probe_state")),
+    *axes(5701, "Probed position, work system, without tool offset", lambda axis: element("probed", axis)),
+    *axes(5711, "Probed position, machine coordinates", lambda axis: element("probed_machine", axis)),
+    one(5720, "Input read by M66 or M67", attribute("input_value")),
+    one(5721, "Value entered in M109 or M120 Q3", attribute("answer")),
+    one(5722, "Last wait: 0 succeeded, 1 failed", attribute("waited")),
+    SystemVariable(5730, 5739, "Values entered in M109 or M120 Q100 and above", element("entered")),
+    SystemVariable(5740, 5759, "Inputs read by M166 or M167", element("input_group")),
+    one(5800, "Motion between calls of the modal macro: 0 G0, 1 G1", attribute("macro_motion")),
+    one(5801, "Modulus of rotary axes, degrees", attribute("rotary_modulus")),
+    SystemVariable(5802, 5804, "Rotary modes of A, B, C", element("rotary_modes")),
 )  # fmt: skip

@@ -103,7 +103,7 @@ class Code(NamedTuple):
     weak: bool = False  # gives way to another code of its group in the block
     wakes: str = ""  # letters that make it run while modal, beside the axis words
     fits: tuple[str, ...] = ()  # motions that it may stand beside, if not all
-    alone: str = ""  # the code that the axis words beside it mean, when the mode in force does not fit
+    alone: str = ""  # the code that the axis words beside it mean
     sole: bool = False  # the only G or M code of its block; every letter is its argument
     supported: bool = True  # False: run raises not-supported-yet
 

@@ -6,7 +6,6 @@ Every setting is told in docs/reference/machine.md.
 
 from __future__ import annotations
 
-import math
 import re
 import sys
 from collections.abc import Iterable, Mapping
@@ -16,7 +15,6 @@ from typing import Annotated, Any, Literal, TypeVar, get_args, get_type_hints
 import msgspec
 from msgspec import Meta
 
-from aircut.machine import tools as tool_library
 from aircut.machine.tools import EMPTY, Tool
 
 AXES = "xyzabc"  # programmable
@@ -192,6 +190,8 @@ class Machine:
         self.own_tools = own_tools
         self.macros = tuple(macros)
         self.folder = folder
+        self.library = tools  # the tools as given, before what programs have changed
+        self.key: str | None = None  # opens encrypted macros
         self.variables: dict[int, float] = {}
 
     @property
@@ -232,23 +232,17 @@ def load(folder: Path) -> Machine:
     machine = Machine(file, tools, own.exists(), [folder / "macros"], folder)
     from aircut.machine import memory
 
-    machine.variables = memory.recall(folder)
+    machine.library = dict(machine.tools)
+    machine.variables, changed = memory.recall(folder)
+    machine.tools |= changed
     return machine
 
 
 def load_tools(path: Path) -> dict[int, Tool]:
-    """The tools of a tools.toml by id. Raises MachineError."""
-    try:
-        tools = tool_library.parse(path.read_text("utf-8"))
-    except OSError as error:
-        raise MachineError(f"{path}: {error.strerror}") from None
-    except (ValueError, msgspec.ValidationError) as error:
-        raise MachineError(f"{path}: {error}") from None
-    for tool in tools.values():
-        for field, value in msgspec.structs.asdict(tool).items():
-            if isinstance(value, float) and not math.isfinite(value):
-                raise MachineError(f"{path}: tool {tool.id}: {field} must be a finite number, not {value}")
-    return tools
+    """The tools of a tools.toml, or of another library (see imports), by id. Raises MachineError."""
+    from aircut.machine.imports import read_tools
+
+    return read_tools(path)
 
 
 # --- reading machine.toml

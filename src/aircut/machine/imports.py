@@ -22,7 +22,6 @@ in a .tools archive. Of a tool:
 from __future__ import annotations
 
 import math
-import os
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -30,6 +29,7 @@ from typing import NamedTuple
 
 import msgspec
 
+from aircut.files import replacing
 from aircut.machine import tools as tool_library
 from aircut.machine import tooltable
 from aircut.machine.config import MachineError
@@ -113,16 +113,13 @@ def write_tools(path: Path, tools: dict[int, Tool]) -> None:
     Comments of a file that was there are lost. Raises MachineError.
     """
     text = "# Tool library. Lengths mm.\n" + "".join(map(toml_table, checked(path, tools.values())))
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
-        temporary.write_bytes(text.encode("utf-8"))
-        os.replace(temporary, path)
+        with replacing(path, binary=True) as file:
+            file.write(text.encode("utf-8"))
     except UnicodeEncodeError:
         raise MachineError(f"{path}: a tool's name is not text") from None
     except OSError as error:
         raise MachineError(f"{path}: {error.strerror}") from None
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 # --- reading
@@ -168,7 +165,7 @@ def checked(path: Path, tools: Iterable[Tool]) -> list[Tool]:
             raise MachineError(f"{path}: tool {tool.id}: slot is not below 0")
         for name, value in msgspec.structs.asdict(tool).items():
             if isinstance(value, float) and not math.isfinite(value):
-                raise MachineError(f"{path}: tool {tool.id}: {name} is not a finite number")
+                raise MachineError(f"{path}: tool {tool.id}: {name} must be a finite number")
         found[tool.id] = tool
     return [found[id] for id in sorted(found)]
 

@@ -1,4 +1,4 @@
-"""What a machine remembers between runs: numbered variables.
+"""What a machine remembers between runs: numbered variables, and tools that programs have changed.
 
 In its own folder they lie in state.db; a LinuxCNC parameter file (lines of a
 number and a value) can be read and written in its place. Values are kept as the
@@ -9,9 +9,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from contextlib import closing
 from pathlib import Path
 
+import msgspec
+
+from aircut.files import replacing
 from aircut.machine.config import MachineError
+from aircut.machine.tools import Tool
 
 #: Numbered variables that outlive a run (AMB-VAR-3, AMB-VAR-20).
 PERSISTENT = (
@@ -25,37 +30,51 @@ PERSISTENT = (
 #: Tables that the user fills in and programs read.
 GIVEN = (*range(100, 500), *range(6000, 7000))
 
-SCHEMA = "CREATE TABLE IF NOT EXISTS variables (number INTEGER PRIMARY KEY, value REAL NOT NULL)"
+SCHEMA = (
+    "CREATE TABLE IF NOT EXISTS variables (number INTEGER PRIMARY KEY, value REAL NOT NULL)",
+    "CREATE TABLE IF NOT EXISTS tools (id INTEGER PRIMARY KEY, tool TEXT NOT NULL)",  # as JSON
+)
 
 
-def recall(folder: Path) -> dict[int, float]:
-    """Variables of a machine's folder; none if it has no state.db yet. Raises MachineError."""
+def recall(folder: Path) -> tuple[dict[int, float], dict[int, Tool]]:
+    """Variables, and tools that programs have changed, of a machine's folder; none without a state.db.
+
+    Raises MachineError.
+    """
     import sqlite3
 
     path = folder / "state.db"
     if not path.exists():
-        return {}
+        return {}, {}
     try:
-        with sqlite3.connect(path) as database:
-            rows = database.execute("SELECT number, value FROM variables").fetchall()
-        database.close()
-    except sqlite3.Error as error:
+        with closing(sqlite3.connect(path)) as database, database:
+            for statement in SCHEMA:
+                database.execute(statement)
+            variables = dict(database.execute("SELECT number, value FROM variables").fetchall())
+            rows = database.execute("SELECT tool FROM tools").fetchall()
+        tools = [msgspec.json.decode(text, type=Tool) for (text,) in rows]
+    except (sqlite3.Error, msgspec.MsgspecError) as error:
         raise MachineError(f"{path}: {error}") from None
-    return dict(rows)
+    return variables, {tool.id: tool for tool in tools}
 
 
-def remember(folder: Path, variables: dict[int, float]) -> None:
-    """Write the variables to state.db in one transaction; those no longer set are dropped. Raises MachineError."""
+def remember(folder: Path, variables: dict[int, float], tools: dict[int, Tool]) -> None:
+    """Write variables and changed tools to state.db, in one transaction; what is not given is dropped.
+
+    Raises MachineError.
+    """
     import sqlite3
 
     path = folder / "state.db"
+    rows = [(tool.id, msgspec.json.encode(tool).decode()) for tool in tools.values()]
     try:
-        database = sqlite3.connect(path)
-        with database:
-            database.execute(SCHEMA)
+        with closing(sqlite3.connect(path)) as database, database:
+            for statement in SCHEMA:
+                database.execute(statement)
             database.execute("DELETE FROM variables")
             database.executemany("INSERT INTO variables VALUES (?, ?)", sorted(variables.items()))
-        database.close()
+            database.execute("DELETE FROM tools")
+            database.executemany("INSERT INTO tools VALUES (?, ?)", rows)
     except sqlite3.Error as error:
         raise MachineError(f"{path}: {error}") from None
 
@@ -93,13 +112,9 @@ def read_parameters(path: Path, known: Iterable[int]) -> dict[int, float]:
 def write_parameters(path: Path, variables: dict[int, float]) -> None:
     """Write a parameter file; the old one stays beside it with the suffix .bak. Raises OSError."""
     text = "".join(f"{number}\t{value:.6f}\n" for number, value in sorted(variables.items()))
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        temporary.write_text(text, "utf-8")
+    with replacing(path) as file:
+        file.write(text)
         if path.exists():
             backup = path.with_name(path.name + ".bak")
             backup.unlink(missing_ok=True)
             os.link(path, backup)
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import msgspec
 
 NO_TOOL = 0
@@ -33,12 +35,18 @@ EMPTY = Tool(NO_TOOL)
 
 
 def parse(text: str) -> dict[int, Tool]:
-    """Tools by id from the text of a tools.toml. Raises ValueError (TOML's or msgspec's, or two of one id)."""
+    """Tools by id from the text of a tools.toml.
+
+    Raises ValueError: TOML's or msgspec's, two tools of one id, a number that is not finite.
+    """
     import tomllib
 
     tools: dict[int, Tool] = {}
     for tool in msgspec.convert(tomllib.loads(text), Library).tools:
         if tool.id in tools or tool.id < 1:
             raise ValueError(f"tool {tool.id}: ids are above zero, and each stands once")
+        for field, value in msgspec.structs.asdict(tool).items():
+            if isinstance(value, float) and not math.isfinite(value):
+                raise ValueError(f"tool {tool.id}: {field} must be a finite number, not {value}")
         tools[tool.id] = tool
     return tools
