@@ -14,9 +14,10 @@ from typing import Any, ClassVar, NamedTuple
 from aircut.canon import ROW, Chunk, Kind
 from aircut.controller.world import Input, World
 from aircut.interpreter.interpreter import Interpreter
-from aircut.interpreter.requests import Answer, Ask, Inputs, Output, Pause, Probe, Probed, Wait, Waited
+from aircut.interpreter.requests import Answer, Ask, Inputs, Output, Pause, Plc, Probe, Probed, Wait, Waited
 from aircut.machine.tools import EMPTY
 
+PLC_GROUP = "aircut.plc"  # entry points: a function (simulation, **arguments) under the P of G100
 PROBE_TYPE = 4  # of tools: these touch with a ball, all others with the point at their end
 STOP_BUTTON = 1  # the window whose only button stops
 THRESHOLD = 50.0  # percent from which an analog input counts as high (AMB-IO-3)
@@ -40,6 +41,7 @@ class Simulation:
         self.outputs: dict[tuple[int, bool], float] = {}  # (number, analog) -> value
         self.shown: list[Ask] = []
         self.pauses = 0
+        self.plc_calls: list[Plc] = []
         self.seen = 0  # moves of which the time has been counted
         self.place = (0.0, 0.0, 0.0)
         self.read: dict[tuple[int, bool], int] = {}  # readings of inputs scripted in sequence
@@ -166,6 +168,14 @@ class Simulation:
     def pause(self, request: Pause) -> None:
         self.pauses += not request.optional or self.interpreter.settings.optional_stop
 
+    def plc(self, request: Plc) -> None:
+        """Call the function that an installed package registers under this name; without one it is only noted."""
+        self.plc_calls.append(request)
+        from importlib.metadata import entry_points
+
+        for entry in entry_points(group=PLC_GROUP, name=request.function):
+            entry.load()(self, **request.arguments)
+
     ANSWERS: ClassVar[dict[type, Callable[[Any, Any], Any]]] = {
         Probe: probe,
         Wait: wait,
@@ -173,6 +183,7 @@ class Simulation:
         Output: output,
         Ask: ask,
         Pause: pause,
+        Plc: plc,
     }
 
 

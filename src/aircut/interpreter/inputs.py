@@ -11,7 +11,7 @@ from typing import Any
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
-from aircut.interpreter.requests import Inputs, Output, Request, Wait, Waited
+from aircut.interpreter.requests import Inputs, Output, Plc, Request, Wait, Waited
 from aircut.interpreter.state import State, out_of_range, whole
 from aircut.interpreter.table import Code, Group, Order, Words
 
@@ -79,9 +79,11 @@ def read_group(analog: bool, m: State, w: Words) -> Generator[Request, Any, None
         m.input_group = [*reply, *[None] * (GROUP - len(reply))]
 
 
-def plc_call(m: State, w: Words) -> None:
-    """G100: a function of the PLC, with its arguments."""
+def plc_call(m: State, w: Words) -> Generator[Request, Any, None]:
+    """G100 P: a function of the PLC, by number or name, with its arguments."""
     m.out.event("PLC_CALL", dict(w))
+    name = w["p"] if isinstance(w["p"], str) else f"{w['p']:g}"
+    yield Plc(name, {letter: value for letter, value in w.items() if letter != "p" and value is not None})
 
 
 def axes_mask(event: str, m: State, w: Words) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Generator, Iterator
+from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
 from aircut.canon import CHUNK, ROW, Chunk
@@ -86,6 +87,7 @@ class Interpreter:
         self.unit = Unit(source, dialect, settings.block_delete, settings.limits.line)
         self.files = [source.name]
         self.units = {source.name: self.unit}
+        self.found: dict[str, Path | None] = {}  # macro files by called name
         self.stack: list[Level] = []
         self.plans: dict[bytes, Shape] = {}
         self.routine = self.unit.entry()
@@ -567,7 +569,9 @@ class Interpreter:
 
     def external(self, name: str) -> Unit | None:
         """The unit of a macro file. Raises Refusal for names that are no file names."""
-        found = macros.find(name, (*self.machine.macros, INSTALLED))
+        if name not in self.found:
+            self.found[name] = macros.find(name, (*self.machine.macros, INSTALLED))
+        found = self.found[name]
         if found is None:
             return None
         key = str(found)

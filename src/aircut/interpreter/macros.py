@@ -59,7 +59,11 @@ def load(path: Path, key: str | None) -> Source:
             return Source.load(path)
         if not key:
             raise Refusal(F.ENCRYPTED, "p", name=path.name, reason="no key is given (--key, or AIRCUT_KEY)")
-        return Source(str(path), ngx.decrypt(path.read_bytes(), key))
+        text = ngx.decrypt(path.read_bytes(), key)
+        if long := ngx.long_line(text):
+            reason = f"line {long[0]} has {long[1]} bytes; encrypted macros have {ngx.LINE} at most"
+            raise Refusal(F.ENCRYPTED, "p", name=path.name, reason=reason)
+        return Source(str(path), text)
     except OSError as error:
         raise Refusal(F.CANNOT_READ, "p", reason=error.strerror) from None
     except ngx.NgxError as error:

@@ -97,6 +97,8 @@ def set_parameter(m: State, w: Words) -> None:
     elif 5802 <= number <= 5804:
         if value not in (0.0, 1.0, 2.0, 3.0):
             raise out_of_range(w, "v", "rotary modes are 0 to 3")
+        if value:
+            raise Refusal(F.NOT_SUPPORTED_YET, "v", code=f"rotary mode {value:g}", title="roll-over of rotary axes")
         m.rotary_modes[number - 5802] = value
     else:
         raise out_of_range(w, "p", "5730 to 5739, or 5800 to 5804")

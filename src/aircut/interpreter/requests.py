@@ -89,5 +89,11 @@ class Pause(NamedTuple):
     optional: bool
 
 
-Request = Probe | Wait | Inputs | Output | Ask | Pause
-REQUESTS = (Probe, Wait, Inputs, Output, Ask, Pause)
+class Plc(NamedTuple):
+    """G100: a function of the PLC. function: the P word. No reply."""
+
+    function: str
+    arguments: dict[str, float]
+
+
+Request = Probe | Wait | Inputs | Output | Ask | Pause | Plc
