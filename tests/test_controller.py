@@ -144,7 +144,7 @@ def test_world_files(tmp_path: Path) -> None:
         '[[bodies]]\nshape = "stl"\nfile = "none.stl"\n',
     ):
         path.write_text(text)
-        with pytest.raises(WorldError, match="world.toml"):
+        with pytest.raises(WorldError, match=r"world\.toml"):
             load(path)
 
 

@@ -96,9 +96,9 @@ def supported(rows: Sequence[Code]) -> None:
 
 
 def sole(rows: Sequence[Code]) -> list[Code]:
-    for row in rows:
+    for at, row in enumerate(rows):
         if row.sole and len(rows) > 1:
-            other = next(other for other in rows if other is not row)
+            other = rows[0] if at else rows[1]
             raise Refusal(F.SOLE_CODE, row.name[0].lower(), code=row.name, other=other.name)
     return list(rows)
 

@@ -606,6 +606,7 @@ class Interpreter:
             self.warn(F.TOOL_NOT_DECLARED, tool=m.tool)
         self.unit, self.routine = level.unit, level.routine
         m.out.file = self.files.index(level.unit.source.name)
+        m.line = m.out.line = level.line
         if level.call.then is not None:
             m.transfer = level.call.then
             return self.follow(level.back)
