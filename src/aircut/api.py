@@ -19,7 +19,7 @@ from aircut.canon.record import Events
 from aircut.canon.toolpath import Extents
 from aircut.diagnostics import Diagnostic, Severity
 from aircut.interpreter.interpreter import Interpreter, Limits, Settings
-from aircut.machine import Machine, built_in
+from aircut.machine import Machine, Tool, built_in
 from aircut.machine import load as load_machine
 from aircut.source import Source
 
@@ -90,6 +90,10 @@ class Result:
         """What the operator was told."""
         found = [(event.values, event.line, self.files[event.file]) for event in self.events if event.name == "MESSAGE"]
         return [Message(text, kind, medium, line, file) for (text, kind, medium), line, file in found]
+
+    def tool(self, id: int) -> Tool | None:
+        """A tool as the run left it in the table; None for one that is not in it."""
+        return self._interpreter.state.tools.get(id)
 
     @property
     def extents(self) -> Extents | None:

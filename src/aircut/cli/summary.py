@@ -66,6 +66,10 @@ def lines(result: Result, numbers: dict[str, Any]) -> list[tuple[str, str]]:
         rows.append(("stops", f"{counts['stops']:,}, waiting for the operator"))
     if numbers["dwell_seconds"]:
         rows.append(("dwell", f"{numbers['dwell_seconds']:g} s"))
-    rows += [("message", markup.plain(markup.parse(message.text))) for message in result.messages if message.text]
+    rows += [
+        ("message", markup.plain(markup.parse(message.text, result.tool)))
+        for message in result.messages
+        if message.text
+    ]
     rows.append(("faults", totals(result.diagnostics) or "none"))
     return rows
