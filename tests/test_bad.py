@@ -19,7 +19,7 @@ ALPHABET = 'GXYZMNFSTPIJKR0123456789.#[]<>="()%;/+-* \n'
 WORDS = ("IF", "THEN", "ELSE", "ELIF", "END", "WHILE", "DO", "GOTO", "BREAK", "SUB", "ENDSUB", "RETURN", "CALL",
          "O1", "M98 P1", "M99", "G65 P1 A1", "M2", "EQ", "MOD", "SIN", "\n", "#1=", "[", "]", "1", "G1 X1",
          'M109 P"a#1#<b>" Q3', "M109 Q-1", "G38.3 Z-5 F9", "M66 P1 L4", "G66 P1", "G67", "G43 H1", "G10 L1 P1 Z5",
-         "G10 L100 P5730 V2", "G250 X1", "G390", "T1 M6", "M62 P1", "G#1", "M#2", "G100 P1", "#<x>=", "M47")  # fmt: skip
+         "M0", "G10 L100 P5730 V2", "G250 X1", "G390", "T1 M6", "M62 P1", "G#1", "M#2", "G100 P1", "M47")  # fmt: skip
 
 
 def codes(text: str | bytes, **limits: int) -> set[str]:
