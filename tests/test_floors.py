@@ -60,9 +60,10 @@ def test_imports_go_down(path: Path) -> None:
 
 
 def test_geometry_and_kernels_know_only_themselves() -> None:
-    for package in ("geometry", "kernels"):
+    known = {"geometry": {"geometry", "kernels"}, "kernels": {"kernels"}}
+    for package, packages in known.items():
         for path in (SOURCE / package).glob("*.py"):
-            assert all(name.split(".")[1] == package for name in imports(path)), path
+            assert all(name.split(".")[1] in packages for name in imports(path)), path
 
 
 def test_no_branch_on_the_dialect() -> None:

@@ -15,6 +15,8 @@ from aircut.export.report import figures
 if TYPE_CHECKING:
     from aircut.api import Result
 
+TAGGED = (0, 1, 2, 3)  # windows that show tags; others show the text as it is (AMB-MSG-8)
+
 
 def summary(result: Result, out: IO[str]) -> None:
     """Write the summary."""
@@ -67,7 +69,7 @@ def lines(result: Result, numbers: dict[str, Any]) -> list[tuple[str, str]]:
     if numbers["dwell_seconds"]:
         rows.append(("dwell", f"{numbers['dwell_seconds']:g} s"))
     rows += [
-        ("message", markup.plain(markup.parse(message.text, result.tool)))
+        ("message", markup.plain(markup.parse(message.text, result.tool, tags=message.kind in TAGGED)))
         for message in result.messages
         if message.text
     ]
