@@ -8,7 +8,20 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from aircut.geometry.contact import CLEAR, SKIN, SLIDE, Box, Cylinder, Mesh, Placed, Sphere, Union, path, scratch
+from aircut.geometry.contact import (
+    CLEAR,
+    INNER_SKIN,
+    SKIN,
+    SLIDE,
+    Box,
+    Cylinder,
+    Mesh,
+    Placed,
+    Sphere,
+    Union,
+    path,
+    scratch,
+)
 from aircut.kernels import mesh as kernel
 from aircut.kernels import twin
 
@@ -114,9 +127,17 @@ def test_touch_by_hand(request, shape, start, end, radius, length):
         assert shape.touches(at(start, end, part), radius)
 
 
+def test_noise_at_the_edge_of_the_skin():
+    """A step into the skin that lands a last bit outside must not be repeated for ever."""
+    ball = Sphere((-2.976149937839221, -9.840865696716904, -17.10202482201337), 19.297867764586982)
+    start, end = (-3.0121608269186306, 19.11748924444476, -9.578485235539798), (-28.1334, -12.2275, -12.5835)
+    part = ball.touch(start, end, 10.441586827965878)
+    assert part is not None and ball.touches(at(start, end, part), 10.441586827965878)
+
+
 def test_grazing_a_round_body_within_the_skin():
     """Newton's steps may jump over the bottom; it is found all the same."""
-    for tenth in range(-40, 40):
+    for tenth in range(-40, 35):
         off = 7 + tenth * 1e-11
         for shape in (BALL, Mesh([[(1, 2, 8), (1, 3, 0), (1, 1, 0)]])):
             part = shape.touch((-20, 2, 3 + off), (20, 2, 3 + off), 2)
@@ -289,7 +310,7 @@ def test_touch_against_a_search(body, way):
     start, end, radius = way
     part, (expected, least) = shape.touch(*way), search(distance, *way)
     if part is None:
-        assert least > radius + SKIN - 1e-10
+        assert least > radius + INNER_SKIN - 1e-11
         return
     assert least <= radius + SKIN + 1e-10
     where = at(start, end, part)

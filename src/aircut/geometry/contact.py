@@ -30,8 +30,10 @@ Excess: TypeAlias = Callable[[Vector], Vector]
 
 SKIN = 4e-10  # mm: a smaller gap is contact
 CLEAR = 6e-10  # mm: the gap after leaving a body
+INNER_SKIN = 0.875 * SKIN  # mm: a ball that comes this near on its way is sure to be found
+LAST_STEP = 1e-13  # mm: a shorter step is noise
 SLIDE = 1e-3  # mm: how far a ball may move on in the skin to meet the body itself
-TRIES = 100  # Newton's steps; 70 reach the last bit of any move in a machine
+TRIES = 200  # Newton's steps; 70 suffice but for noise
 ORTHONORMAL = 1e-9  # a rotation matrix may be this much off in each product of its rows
 ROOM = 1024  # spans of a sweep before it asks for more
 
@@ -81,10 +83,12 @@ def approach(excess: Excess, start: Vector, move: Vector, radius: float) -> floa
     excess: the vector from the body's nearest point to a point, mm; zero inside.
     The gap is a convex function of the way, so a tangent to its graph lies below it: a step to the
     tangent's zero cannot pass the gap's own. Every step shrinks gap times slope at least fourfold,
-    so the steps end, first where the gap is SKIN and then where it is 0. A ball that comes into the
-    skin and no nearer grazes the body, where the gap stops falling. But a ball that slides on
-    in the skin for more than SLIDE before that is in contact from where it came in.
+    so the steps end, first in the skin (aimed at INNER_SKIN, or they would creep up to it by last
+    bits) and then where the gap is 0. A ball that comes into the skin and no nearer grazes the
+    body, where the gap stops falling. But a ball that slides on in the skin for more than SLIDE
+    before that is in contact from where it came in.
     """
+    length = hypot(*move)
     part = 0.0
     entered = falling = None
     for _ in range(TRIES):
@@ -107,16 +111,14 @@ def approach(excess: Excess, start: Vector, move: Vector, radius: float) -> floa
         if entered is not None:
             falling = part
         slope /= distance
-        following = part - (gap - SKIN) / slope
-        if gap <= SKIN or following <= part:
-            following = part - gap / slope
-        following = min(following, 1.0)
-        if following <= part:  # the last bit
+        aim = INNER_SKIN if gap > SKIN else 0.0
+        following = min(part - (gap - aim) / slope, 1.0)
+        if (following - part) * length < LAST_STEP:
             break
         part = following
     if entered is None and gap > SKIN:
         return None
-    if entered is not None and (part - entered) * hypot(*move) > SLIDE:
+    if entered is not None and (part - entered) * length > SLIDE:
         return entered
     return part
 
