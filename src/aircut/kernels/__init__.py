@@ -27,3 +27,4 @@ def twin(name: str, as_name: str) -> ModuleType:
 
 if os.environ.get("AIRCUT_PYTHON_KERNELS"):
     scan = twin("scan", "aircut.kernels.scan")
+    mesh = twin("mesh", "aircut.kernels.mesh")
