@@ -116,12 +116,12 @@ def user(name: str) -> Code:
 
 
 CODES = (
-    Code("M98", "Call a subroutine", call, Group.CALL, Order.CALL, takes="pl", needs="p"),
+    Code("M98", "Call a subroutine", call, Group.CALL, Order.CALL, takes="pl", needs="p", text=True),
     Code("M99", "Return from a subroutine", back, Group.RETURN, Order.RETURN),
-    Code("G65", "Call a macro with arguments", macro, Group.NON_MODAL, Order.CALL, needs="p", sole=True),
-    Code("G66", "Modal macro call", modal_macro, Group.MACRO, Order.CALL, needs="p", sole=True),
+    Code("G65", "Call a macro with arguments", macro, Group.NON_MODAL, Order.CALL, needs="p", sole=True, text=True),
+    Code("G66", "Modal macro call", modal_macro, Group.MACRO, Order.CALL, needs="p", sole=True, text=True),
     Code("G67", "Modal macro call off", no_modal_macro, Group.MACRO, Order.CALL),
     *(user(f"G{number}") for number in range(200, 500)),
     *(user(f"M{number}") for number in range(200, 300)),
-    Code("CALL", "Call a macro with arguments", macro, Group.NON_MODAL, Order.CALL, needs="p", sole=True),
+    Code("CALL", "Call a macro with arguments", macro, Group.NON_MODAL, Order.CALL, needs="p", sole=True, text=True),
 )

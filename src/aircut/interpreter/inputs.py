@@ -80,10 +80,11 @@ def read_group(analog: bool, m: State, w: Words) -> Generator[Request, Any, None
 
 
 def plc_call(m: State, w: Words) -> Generator[Request, Any, None]:
-    """G100 P: a function of the PLC, by number or name, with its arguments."""
+    """G100 P: a function of the PLC, by number, with its arguments."""
     m.out.event("PLC_CALL", dict(w))
-    name = w["p"] if isinstance(w["p"], str) else f"{w['p']:g}"
-    yield Plc(name, {letter: value for letter, value in w.items() if letter != "p" and value is not None})
+    if w["p"] is None:
+        raise Refusal(F.NULL_VALUE, "p", what="P", operation="it names the function")
+    yield Plc(f"{w['p']:g}", {letter: value for letter, value in w.items() if letter != "p" and value is not None})
 
 
 def axes_mask(event: str, m: State, w: Words) -> None:

@@ -229,12 +229,7 @@ class Interpreter:
                             shape, values = known
                         steps = shape.steps.get(m.motion) or self.arranged(shape.codes, shape.letters, shape.steps)
                         w = dict(zip(shape.letters, values))  # noqa: B905  one value a letter by construction
-                        for row in steps.codes:
-                            if row.modal:
-                                self.set_mode(row)
-                            if (talk := row.run(m, w)) is not None:
-                                self.talk = (talk, steps.codes[steps.codes.index(row) + 1 :], w)
-                                break
+                        self.carry_out(steps.codes, w)
                         line += 1
                     else:
                         line = self.step(unit, line)
@@ -370,12 +365,17 @@ class Interpreter:
         if None in values or any(value != value for value in values):
             if not steps.null or is_null(w.get("p", 0.0)) or is_null(w.get("l", 0.0)):
                 self.explain(unit, line, TypeError("null word"))
-        for row in steps.codes:
+        self.carry_out(steps.codes, w)
+
+    def carry_out(self, codes: tuple[Code, ...], w: Words) -> None:
+        """Run the codes of a block in turn, up to one that has something to ask. Raises Refusal."""
+        m = self.state
+        for row in codes:
             if row.modal:
                 self.set_mode(row)
             if (talk := row.run(m, w)) is not None:
-                self.talk = (talk, steps.codes[steps.codes.index(row) + 1 :], w)
-                break
+                self.talk = (talk, codes[codes.index(row) + 1 :], w)
+                return
 
     def converse(self) -> Generator[Request, Any, None]:
         """Carry on a block whose code has something to ask, and the codes after it. Raises Refusal."""
@@ -384,12 +384,9 @@ class Interpreter:
         self.talk = None
         self.state.asked += 1
         yield from talk
-        for row in rest:
-            if row.modal:
-                self.set_mode(row)
-            further = row.run(self.state, w)
-            if further is not None:
-                yield from further
+        self.carry_out(rest, w)
+        if self.talk is not None:
+            yield from self.converse()
 
     def computed_codes(
         self, codes: tuple[str, ...], letters: tuple[str, ...], values: tuple[Any, ...]

@@ -105,8 +105,8 @@ def set_parameter(m: State, w: Words) -> None:
 
 
 CODES = (
-    Code("M109", "Message", partial(show, False), Group.MESSAGE, Order.MESSAGE, takes="pqrd"),
-    Code("M120", "Media message", partial(show, True), Group.MESSAGE, Order.MESSAGE, takes="pqrd"),
+    Code("M109", "Message", partial(show, False), Group.MESSAGE, Order.MESSAGE, takes="pqrd", text=True),
+    Code("M120", "Media message", partial(show, True), Group.MESSAGE, Order.MESSAGE, takes="pqrd", text=True),
 )
 
 SETTINGS = {

@@ -103,7 +103,7 @@ UNSUPPORTED = frozenset(
 RANGES = (
     Range(100, 499, "Input variables: a run changes its own copy", "table"),
     Range(500, 3999, "Program variables", "null"),
-    Range(4000, 4999, "Shared variables: written back after the run", "table"),
+    Range(4000, 4999, "Shared variables: written back after the run", "table", kept=True),
     Range(6000, 6999, "Protected variables: programs only read them", "table", writable=False),
 )
 

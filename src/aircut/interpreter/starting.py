@@ -53,7 +53,7 @@ def remembered(m: State) -> dict[int, float]:
     """The numbered variables that outlive the run, as the machine stores them: mm, degrees."""
     kept = dict(m.machine.variables)
     for row in m.dialect.ranges:
-        if row.title.startswith("Shared"):
+        if row.kept:
             for number in range(row.first, row.last + 1):
                 value = m.numbered[number]
                 if value is None:

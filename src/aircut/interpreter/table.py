@@ -105,6 +105,7 @@ class Code(NamedTuple):
     fits: tuple[str, ...] = ()  # motions that it may stand beside, if not all
     alone: str = ""  # the code that the axis words beside it mean
     sole: bool = False  # the only G or M code of its block; every letter is its argument
+    text: bool = False  # its P may be a string
     supported: bool = True  # False: run raises not-supported-yet
 
     @property
@@ -131,6 +132,7 @@ class Range(NamedTuple):
     last: int
     title: str
     initial: str  # "null" or "table": from the machine
+    kept: bool = False  # written back to the machine after the run
     writable: bool = True
 
 

@@ -298,9 +298,6 @@ def target_of(target: Variable | Name, dialect: Dialect) -> tuple[str, Any]:
     return "computed", compile_value(target.number, dialect)
 
 
-TEXT_CODES = frozenset({"m98", "g65", "g66", "call", "m109", "m120"})  # their P may be a string (AMB-LEX-5)
-
-
 def takes_text(codes: list[str], block: Block, dialect: Dialect) -> bool:
     """Whether a string may be the P of this block."""
     literal = {
@@ -310,6 +307,6 @@ def takes_text(codes: list[str], block: Block, dialect: Dialect) -> bool:
     }
     return (
         bool(block.call)
-        or bool(literal & TEXT_CODES)
+        or any(name in dialect.codes and dialect.codes[name].text for name in literal)
         or any(word.letter in "gm" and not isinstance(word.value, Number) for word in block.words)
     )
