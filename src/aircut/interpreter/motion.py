@@ -13,6 +13,7 @@ from aircut.canon import EXACT_STOP, INVERSE_TIME, ROW, Kind
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.geometry import arcs
+from aircut.interpreter.path import RECORDER
 from aircut.interpreter.state import INCH, PLANES, State, out_of_range, whole
 from aircut.interpreter.table import AXES, Code, Group, Order, Words
 
@@ -37,10 +38,9 @@ def target(m: State, w: Words) -> list[float] | None:
     goal = m.position[:]
     named = False
     if m.machine_frame:
-        for i, axis in NUMBERED_AXES:
-            if axis in w:
-                named = True
-                goal[i] = w[axis] * (unit if i < 3 else 1.0) - m.offset[i] - m.tool_offset[i]
+        axes = {i: w[axis] * (unit if i < 3 else 1.0) for i, axis in NUMBERED_AXES if axis in w}
+        named = bool(axes)
+        goal = at_axes(m, axes)
     elif m.absolute:
         for i, axis in LINEAR_AXES:
             if axis in w:
@@ -65,6 +65,19 @@ def target(m: State, w: Words) -> list[float] | None:
             wanted="it leads beyond all machines",
         )
     return goal if named else None
+
+
+def at_axes(m: State, axes: dict[int, float]) -> list[float]:
+    """The programmed point at which these axes stand at these machine positions, and the others where they are."""
+    if m.frame is not None:
+        machine = m.machine_position()
+        for i, value in axes.items():
+            machine[i] = value
+        return m.to_program([p - t for p, t in zip(machine, m.tool_offset, strict=True)])
+    goal = m.position[:]
+    for i, value in axes.items():
+        goal[i] = value - m.offset[i] - m.tool_offset[i]
+    return goal
 
 
 def feed_speed(m: State, w: Words, length: float, rotary: bool = False) -> float:
@@ -98,14 +111,25 @@ def length_of(start: list[float], end: list[float]) -> tuple[float, bool]:
 
 
 def write(m: State, kind: int, goal: list[float], speed: float, flags: int) -> None:
-    """Record a straight move, and be there."""
-    o = m.offset
-    out = m.out
-    out.rows += pack(
-        goal[0] + o[0], goal[1] + o[1], goal[2] + o[2], goal[3] + o[3], goal[4] + o[4], goal[5] + o[5],
-        0.0, 0.0, speed, out.line, m.tool, 0, out.file, kind, m.plane, flags,
-    )  # fmt: skip
+    """Move straight to a point of the program's frame, and be there."""
+    if m.frame is not None or m.way is not RECORDER:
+        m.way.line(m, kind, m.to_space(goal), speed, flags)
+    else:
+        o = m.offset
+        out = m.out
+        out.rows += pack(
+            goal[0] + o[0], goal[1] + o[1], goal[2] + o[2], goal[3] + o[3], goal[4] + o[4], goal[5] + o[5],
+            0.0, 0.0, speed, out.line, m.tool, 0, out.file, kind, m.plane, flags,
+        )  # fmt: skip
     m.position = goal
+
+
+def write_arc(m: State, end: list[float], center: tuple[float, float], turns: int, speed: float, flags: int) -> None:
+    """Move along an arc of the program's frame (center in the plane's axes), and be at its end."""
+    o = m.offset
+    first, second, _ = arcs.PLANE_AXES[m.plane]
+    m.way.arc(m, m.to_space(end), (center[0] + o[first], center[1] + o[second]), turns, speed, flags)
+    m.position = end
 
 
 def traverse(m: State, w: Words) -> None:
@@ -183,14 +207,7 @@ def arc(turn: int, m: State, w: Words) -> None:
         speed = feed_speed(m, w, hypot(around, end[axes[2]] - m.position[axes[2]]))
     else:
         speed = m.feed if m.feed > 0.0 else feed_speed(m, w, 0.0)
-    o = m.offset
-    out = m.out
-    out.rows += pack(
-        end[0] + o[0], end[1] + o[1], end[2] + o[2], end[3] + o[3], end[4] + o[4], end[5] + o[5],
-        center[0] + o[axes[0]], center[1] + o[axes[1]], speed,
-        out.line, m.tool, turn * turns, out.file, ARC, m.plane, flags,
-    )  # fmt: skip
-    m.position = end
+    write_arc(m, end, center, turn * turns, speed, flags)
     if m.macro is not None:
         trigger(m)
 
@@ -278,10 +295,7 @@ def go_home(stored: str, m: State, w: Words) -> None:
     if middle is not None and apart(middle, m.position):
         write(m, TRAVERSE, middle, 0.0, m.flags)
     home = getattr(m, stored)
-    goal = m.position[:]
-    for i, axis in NUMBERED_AXES:
-        if axis in m.axes and (middle is None or axis in w):
-            goal[i] = home[i] - m.offset[i] - m.tool_offset[i]
+    goal = at_axes(m, {i: home[i] for i, axis in NUMBERED_AXES if axis in m.axes and (middle is None or axis in w)})
     if apart(goal, m.position):
         write(m, TRAVERSE, goal, 0.0, m.flags)
 

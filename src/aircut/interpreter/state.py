@@ -1,16 +1,17 @@
 """The state of a run: position, modes, offsets, variables.
 
 Lengths are mm, angles degrees, speeds mm/min. `position` is the controlled point
-in the program's own frame; adding `offset` gives machine coordinates.
+in the program's own frame; `to_space` leads to machine coordinates.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from aircut.canon import Recorder
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.interpreter.path import RECORDER, Onward, Place, Stage
 from aircut.language.arithmetic import EQUAL
 from aircut.machine import Machine
 from aircut.machine.tools import EMPTY
@@ -25,6 +26,16 @@ PLANES = ("XY", "XZ", "YZ")  # by plane number, as canonical commands name them
 WORK_SYSTEMS = 9
 
 
+class Frame(Protocol):
+    """What comes between the offsets and space: scaling, rotation, tilt."""
+
+    def to_space(self, place: Place) -> Place:
+        """Of a point with the offsets added."""
+
+    def to_program(self, place: Place) -> Place:
+        """Its inverse."""
+
+
 class State:
     """All that a block can read and change. Handlers get it as their first argument."""
 
@@ -37,6 +48,9 @@ class State:
 
         self.position = [0.0] * 6
         self.offset = [0.0] * 6  # work system + G52 + G92
+        self.frame: Frame | None = None
+        self.stages: dict[str, Stage] = {}  # by slot of the path
+        self.way: Onward = RECORDER  # where moves go
         self.origins = [[0.0] * 6 for _ in range(WORK_SYSTEMS)]
         self.system = 0
         self.local = [0.0] * 6  # G52
@@ -112,13 +126,29 @@ class State:
 
     # --- position
 
+    def to_space(self, place: Place) -> Place:
+        """From the program's frame to machine coordinates, without the tool's offset."""
+        moved = [p + o for p, o in zip(place, self.offset, strict=True)]
+        return moved if self.frame is None else self.frame.to_space(moved)
+
+    def to_program(self, place: Place) -> Place:
+        """The inverse of `to_space`."""
+        moved = place if self.frame is None else self.frame.to_program(place)
+        return [p - o for p, o in zip(moved, self.offset, strict=True)]
+
     def add_offsets(self) -> None:
         """Recompute `offset`; the machine position stays, so the program position changes."""
+        here = self.to_space(self.position)
         origin, local, shift = self.origins[self.system], self.local, self.shift
         on = 1.0 if self.shifted else 0.0
-        before = self.offset
         self.offset = [origin[i] + local[i] + on * shift[i] for i in range(6)]
-        self.position = [p + b - o for p, b, o in zip(self.position, before, self.offset, strict=True)]
+        self.position = self.to_program(here)
+
+    def set_frame(self, frame: Frame | None) -> None:
+        """Put a frame in force; the machine position stays."""
+        here = self.to_space(self.position)
+        self.frame = frame
+        self.position = self.to_program(here)
 
     def told_shift(self) -> list[float]:
         """G52 and G92 together, as SET_G92_OFFSET tells them."""
@@ -126,7 +156,7 @@ class State:
 
     def machine_position(self) -> list[float]:
         """Positions of the machine's axes: the tool's offset included."""
-        return [p + o + t for p, o, t in zip(self.position, self.offset, self.tool_offset, strict=True)]
+        return [s + t for s, t in zip(self.to_space(self.position), self.tool_offset, strict=True)]
 
     # --- variables
 

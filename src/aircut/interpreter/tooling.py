@@ -31,7 +31,8 @@ def tool_of(m: State, w: Words, letter: str) -> Tool:
 
 def compensate(m: State, offset: list[float], tool: Tool) -> None:
     """Put a tool offset in force: the machine stays, the program position changes."""
-    m.position = [p + b - a for p, b, a in zip(m.position, m.tool_offset, offset, strict=True)]
+    space = zip(m.to_space(m.position), m.tool_offset, offset, strict=True)
+    m.position = m.to_program([p + b - a for p, b, a in space])
     m.tool_offset = offset
     m.compensated_tool = tool
     m.out.event("USE_TOOL_LENGTH_OFFSET", *offset, 0.0, 0.0, 0.0)
