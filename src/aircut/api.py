@@ -18,7 +18,7 @@ from aircut.canon import COMMANDS, Chunk, Kind, Recording, Toolpath
 from aircut.canon.record import Events
 from aircut.canon.toolpath import Extents
 from aircut.diagnostics import Diagnostic, Severity
-from aircut.interpreter.interpreter import Interpreter, Limits, Settings
+from aircut.interpreter.running import Limits, Run, Settings
 from aircut.machine import Machine, Tool, built_in
 from aircut.machine import load as load_machine
 from aircut.source import Source
@@ -59,7 +59,7 @@ class Result:
     and named ones.    state: the modes and positions at the end.
     """
 
-    def __init__(self, recording: Recording, interpreter: Interpreter) -> None:
+    def __init__(self, recording: Recording, interpreter: Run) -> None:
         self.recording = recording
         self.files = list(interpreter.files)
         self.diagnostics: list[Diagnostic] = list(interpreter.diagnostics)
@@ -180,15 +180,16 @@ class Program:
     def __repr__(self) -> str:
         return f"<Program {self.source.name!r}: {len(self.source)} lines, {self.dialect.name}>"
 
-    def interpreter(self, machine: Machine | str | Path | None = None, **settings: Any) -> Interpreter:
-        """An Interpreter of this program.
+    def interpreter(self, machine: Machine | str | Path | None = None, **settings: Any) -> Run:
+        """An interpreter of this program.
 
         machine: a Machine, or the path of a machine's folder; None for the built-in one.
         settings: as in interpreter.Settings. Raises MachineError for a folder that cannot be used.
         """
         if isinstance(machine, str | Path):
             machine = load_machine(Path(machine))
-        return Interpreter(self.source, self.dialect, machine or built_in(), Settings(**settings))
+        made = machine or built_in(self.dialect.axes)
+        return self.dialect.interpreter(self.source, self.dialect, made, Settings(**settings))
 
     def check(self, machine: Machine | str | Path | None = None, **settings: Any) -> list[Diagnostic]:
         """All diagnostics, going on after errors; no motion is kept."""

@@ -11,13 +11,13 @@ import click
 
 from aircut.cli import common
 from aircut.diagnostics import Diagnostic, Severity
-from aircut.interpreter.interpreter import Interpreter
+from aircut.interpreter.running import Run
 
 
 def check(files: Sequence[Path], style: str, output: Path | None, options: dict[str, Any]) -> int:
     """Check the files one by one; returns the exit status."""
     diagnostics: list[Diagnostic] = []
-    interpreters: list[Interpreter] = []
+    interpreters: list[Run] = []
     for file in files:
         made = common.interpreter(file, options, common.machine(options), keep_going=True, keeps_moves=False)
         if isinstance(made, Diagnostic):
@@ -33,7 +33,7 @@ def check(files: Sequence[Path], style: str, output: Path | None, options: dict[
 
 
 def write(
-    diagnostics: Sequence[Diagnostic], style: str, output: Path | None, interpreters: Sequence[Interpreter]
+    diagnostics: Sequence[Diagnostic], style: str, output: Path | None, interpreters: Sequence[Run]
 ) -> None:
     from aircut.files import replacing
 

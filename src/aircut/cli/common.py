@@ -14,7 +14,7 @@ import click
 from aircut import dialects
 from aircut.diagnostics import Diagnostic, Severity, Span
 from aircut.diagnostics import faults as F
-from aircut.interpreter.interpreter import Interpreter, Limits, Settings
+from aircut.interpreter.running import Limits, Run, Settings
 from aircut.machine import Machine, MachineError, built_in, load, memory
 from aircut.source import Source
 
@@ -59,7 +59,7 @@ def settings(options: dict[str, Any], keep_going: bool, keeps_moves: bool) -> Se
 
 def interpreter(
     file: Path, options: dict[str, Any], made: Machine, keep_going: bool, keeps_moves: bool
-) -> Interpreter | Diagnostic:
+) -> Run | Diagnostic:
     """An interpreter of the file, or why there is none. Raises click.UsageError for an unknown dialect."""
     try:
         dialect = dialects.load(options["dialect"])
@@ -69,10 +69,10 @@ def interpreter(
         source = Source.load(file)
     except OSError as error:
         return F.CANNOT_READ.at(str(file), Span(), reason=error.strerror or str(error))
-    return Interpreter(source, dialect, made, settings(options, keep_going, keeps_moves))
+    return dialect.interpreter(source, dialect, made, settings(options, keep_going, keeps_moves))
 
 
-def remember(options: dict[str, Any], made: Machine, finished: Interpreter) -> None:
+def remember(options: dict[str, Any], made: Machine, finished: Run) -> None:
     """Write back what outlives the run, where there is a place for it. Raises click.ClickException."""
     from aircut.interpreter.starting import remembered
 
@@ -150,7 +150,7 @@ def totals(diagnostics: Sequence[Diagnostic]) -> str:
     return ", ".join(f"{n} {word}{'s' * (n != 1)}" for n, word in counts if n)
 
 
-def lines_of(*interpreters: Interpreter) -> Callable[[str, int], str]:
+def lines_of(*interpreters: Run) -> Callable[[str, int], str]:
     """Text of a line of a program, by file name and number from 1."""
     sources = {name: unit.source for i in interpreters for name, unit in i.units.items()}
     return lambda file, line: sources[file].text(line - 1) if file in sources else ""

@@ -12,7 +12,7 @@ import click
 from aircut.canon import Recording
 from aircut.cli import common
 from aircut.diagnostics import Diagnostic
-from aircut.interpreter.interpreter import Interpreter
+from aircut.interpreter.running import Run
 
 if TYPE_CHECKING:
     from aircut.controller import Simulation
@@ -42,7 +42,7 @@ def run(file: Path, style: str, output: Path | None, options: dict[str, Any]) ->
     return int(made.failed)
 
 
-def simulated(made: Interpreter, options: dict[str, Any]) -> Simulation | None:
+def simulated(made: Run, options: dict[str, Any]) -> Simulation | None:
     """The run in a world, where one is wanted. Raises click.UsageError."""
     if not (options["simulate"] or options["world"]):
         return None
@@ -57,7 +57,7 @@ def simulated(made: Interpreter, options: dict[str, Any]) -> Simulation | None:
         raise click.UsageError(str(error)) from None
 
 
-def report(made: Interpreter, simulation: Simulation | None, style: str, out: IO[str], options: dict[str, Any]) -> None:
+def report(made: Run, simulation: Simulation | None, style: str, out: IO[str], options: dict[str, Any]) -> None:
     if style == "canon":
         out.writelines(listing(made, simulation))
         return
@@ -72,7 +72,7 @@ def report(made: Interpreter, simulation: Simulation | None, style: str, out: IO
     summary(result, out)
 
 
-def listing(made: Interpreter, simulation: Simulation | None) -> Iterable[str]:
+def listing(made: Run, simulation: Simulation | None) -> Iterable[str]:
     """The canonical listing, written as the run goes."""
     from aircut.export.listing import Listing
 
@@ -83,7 +83,7 @@ def listing(made: Interpreter, simulation: Simulation | None) -> Iterable[str]:
             advance(made.line, len(made.unit.source))
 
 
-def collect(made: Interpreter, simulation: Simulation | None = None) -> Any:
+def collect(made: Run, simulation: Simulation | None = None) -> Any:
     """The Result of a run."""
     from aircut.api import Result
 

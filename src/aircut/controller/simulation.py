@@ -13,8 +13,8 @@ from typing import Any, ClassVar, NamedTuple
 
 from aircut.canon import ROW, Chunk, Kind
 from aircut.controller.world import Input, World
-from aircut.interpreter.interpreter import Interpreter
 from aircut.interpreter.requests import Answer, Ask, Inputs, Output, Pause, Plc, Probe, Probed, Wait, Waited
+from aircut.interpreter.running import Run
 from aircut.machine.tools import EMPTY
 
 PLC_GROUP = "aircut.plc"  # entry points: a function (simulation, **arguments) under the P of G100
@@ -34,7 +34,7 @@ class Alarm(NamedTuple):
 class Simulation:
     """One run of an interpreter in a world. Iterate `run()`; `outputs` and `shown` tell what it did."""
 
-    def __init__(self, interpreter: Interpreter, world: World) -> None:
+    def __init__(self, interpreter: Run, world: World) -> None:
         self.interpreter = interpreter
         self.world = world
         self.time = 0.0  # seconds

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Generator, Iterator
+from collections.abc import Generator
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
 from aircut.canon import CHUNK, ROW, Chunk
-from aircut.diagnostics import Diagnostic, Fault, Frame, Refusal, Severity, Span
+from aircut.diagnostics import Fault, Frame, Refusal, Span
 from aircut.diagnostics import faults as F
 from aircut.interpreter import macros, starting
 from aircut.interpreter.arranging import Steps, arrange, code_name, find
@@ -16,6 +16,7 @@ from aircut.interpreter.auxiliary import End, Restart
 from aircut.interpreter.calls import ARGUMENTS, Call, Return
 from aircut.interpreter.compiling import FAILURES, explain
 from aircut.interpreter.requests import Request
+from aircut.interpreter.running import Run, Settings, Stopped
 from aircut.interpreter.state import State
 from aircut.interpreter.table import Code, Dialect, Group, Words
 from aircut.interpreter.tooling import TOOL_CHANGE
@@ -38,25 +39,6 @@ UTF16 = (b"\xff\xfe", b"\xfe\xff")  # byte order marks
 SHAPE_WORD = re.compile(rb"([a-z])([\d.]*)")
 
 
-class Limits(NamedTuple):
-    """What stops runaway programs; all can be raised."""
-
-    blocks: int = 100_000_000  # run again by loops, GOTO, calls, M47
-    moves: int | None = None  # None: no limit; set where they are all kept
-    line: int = 1 << 20  # characters
-    diagnostics: int = 1000
-
-
-class Settings(NamedTuple):
-    """How to run."""
-
-    block_delete: bool = False
-    optional_stop: bool = False
-    keep_going: bool = False  # after an error, go on with the next block
-    restarts: int = 1  # runs that M47 asks for
-    limits: Limits = Limits()
-
-
 class Level(NamedTuple):
     """A caller, waiting for its call to come back."""
 
@@ -70,22 +52,14 @@ class Level(NamedTuple):
     scope: dict[str, float | None]
 
 
-class Stopped(Exception):
-    """The run cannot go on."""
-
-
-class Interpreter:
+class Interpreter(Run):
     """Runs one program on one machine. Iterate `run()`; then read `state` and `diagnostics`."""
 
     def __init__(self, source: Source, dialect: Dialect, machine: Machine, settings: Settings | None = None) -> None:
-        self.settings = settings = settings or Settings()
-        self.dialect = dialect
-        self.machine = machine
-        self.diagnostics: list[Diagnostic] = []
-        self._told: set[tuple[Any, ...]] = set()
+        super().__init__(source, dialect, machine, settings)
+        settings = self.settings
         self.state = State(dialect, machine, self.warn)
         self.unit = Unit(source, dialect, settings.block_delete, settings.limits.line)
-        self.files = [source.name]
         self.units = {source.name: self.unit}
         self.found: dict[str, Path | None] = {}  # macro files by called name
         self.stack: list[Level] = []
@@ -94,8 +68,6 @@ class Interpreter:
         self.repeated = 0
         self.passes = 0
         self.watched: tuple[int, int, tuple[Any, ...]] | None = None
-        self.line = 0  # being run, from 0
-        self.ended: End | None = None
         #: A code that asks the world: its conversation, the codes still to run, and the block's words.
         self.talk: tuple[Generator[Request, Any, None], tuple[Code, ...], Words] | None = None
 
@@ -103,12 +75,6 @@ class Interpreter:
 
     def stack_frames(self) -> tuple[Frame, ...]:
         return tuple(Frame(level.call.name, level.unit.source.name, level.line) for level in self.stack)
-
-    def tell(self, diagnostic: Diagnostic) -> None:
-        key = (diagnostic.code, diagnostic.file, diagnostic.span)
-        if key not in self._told and len(self.diagnostics) < self.settings.limits.diagnostics:
-            self._told.add(key)
-            self.diagnostics.append(diagnostic)
 
     def warn(self, fault: Fault, letter: str = "", **values: Any) -> None:
         """A warning of the block being run."""
@@ -119,17 +85,7 @@ class Interpreter:
         span = unit.place(line, refusal) if line < len(unit.source) else Span()
         self.tell(refusal.fault.at(unit.source.name, span, frames, **refusal.values))
 
-    @property
-    def failed(self) -> bool:
-        return any(d.severity is Severity.ERROR for d in self.diagnostics)
-
     # --- the run
-
-    def run(self) -> Iterator[Chunk]:
-        """Run the program with nobody to ask; yields its motion and events as they come."""
-        for item in self.execute():
-            if isinstance(item, Chunk):
-                yield item
 
     def execute(self) -> Generator[Chunk | Request, Any, None]:
         """Run the program: yields motion and events, and requests, to be sent replies (None: not executed)."""

@@ -9,6 +9,7 @@ from functools import partial
 
 from aircut.interpreter import auxiliary, calls, inputs, messages, modes, motion, offsets, probing, tooling
 from aircut.interpreter.arranging import code_name
+from aircut.interpreter.interpreter import Interpreter
 from aircut.interpreter.named import NAMED
 from aircut.interpreter.state import State
 from aircut.interpreter.system import SYSTEM
@@ -118,6 +119,7 @@ def key(row: Code) -> str:
 ROSETTA = Dialect(
     name="rosetta",
     title="RosettaCNC",
+    interpreter=Interpreter,
     codes={key(row): row for row in CODES},
     items={row.name.lower(): row for row in (*modes.ITEMS, *auxiliary.ITEMS, *POLAR)},
     unsupported=UNSUPPORTED,

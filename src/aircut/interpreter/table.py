@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from aircut.interpreter.requests import Request
+    from aircut.interpreter.running import Run
     from aircut.interpreter.state import State
 
 Words = Mapping[str, Any]  # letter -> value, of one block
@@ -149,6 +150,7 @@ class Dialect(NamedTuple):
 
     name: str
     title: str
+    interpreter: Callable[..., Run]  # (source, dialect, machine, settings): reads and runs its programs
     codes: Mapping[str, Code]  # by normalized text: "g59.1", "m3", "call"
     items: Mapping[str, Code]  # by letter
     unsupported: frozenset[str]  # codes that belong to relatives of the language only
@@ -159,3 +161,4 @@ class Dialect(NamedTuple):
     local_underscore: bool  # a leading _ makes a named variable local (else: global)
     settings: Mapping[int, Code]  # G10's L numbers
     no_variable: str  # hint for numbers outside all ranges
+    axes: str = "XYZ"  # of the machine that serves when none is given
