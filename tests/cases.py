@@ -11,7 +11,7 @@ import msgspec
 import aircut
 from aircut.api import Result
 from aircut.diagnostics import Severity
-from aircut.interpreter.interpreter import Limits
+from aircut.interpreter.running import Limits
 from aircut.machine import Machine, Tool, built_in
 
 ROOT = Path(__file__).parent.parent
