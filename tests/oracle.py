@@ -86,7 +86,7 @@ class Writer:
 
     def line(self) -> str:
         kinds = (self.straight, self.straight, self.arc, self.arc, self.radius_arc, self.mode, self.offset,
-                 self.setting, self.auxiliary, self.machine, self.full_circle)  # fmt: skip
+                 self.setting, self.auxiliary, self.machine, self.full_circle, self.cycle)  # fmt: skip
         text = self.random.choice(kinds)()
         if self.random.random() < 0.1:
             text = f"N{self.random.randint(1, 9999)} {text}"
@@ -127,6 +127,43 @@ class Writer:
         self.moving = False
         step = f"{first}{self.number(1, 20)} {second}{self.number(1, 20)}"
         return f"G91 {code} {step} R{radius}{self.feed()}\n{back}"
+
+    def cycle(self) -> str:
+        """A canned cycle and places that repeat it, with changes of mode between them."""
+        first, second, _, _, normal = PLANES[self.plane]
+        code = self.random.choice(("G73", "G81", "G82", "G83", "G85", "G86", "G88", "G89"))
+        top = self.random.uniform(-8, 8)
+        depth = (
+            top - self.random.uniform(-1 if self.faulty else 0, 30) if self.absolute else self.random.uniform(-30, 0)
+        )
+        words = f"{code} {first}{self.number()} {normal}{depth:.3f} R{top:.3f}"
+        if code in ("G73", "G83"):
+            words += f" Q{self.random.randint(1, 9)}.037"
+        elif code in ("G82", "G86", "G88", "G89"):
+            words += f" P{self.number(0, 3)}"
+        if self.random.random() < 0.2:
+            words += f" L{self.random.randint(1, 3)}"
+        before = ("S500 M3\n" if code in ("G86", "G88") else "") + ("G94 F150\n" if self.inverse else "")
+        self.inverse = self.moving = False
+        lines = [before + words]
+        for _ in range(self.random.randint(0, 4)):
+            pick = self.random.random()
+            if pick < 0.2:
+                lines.append(self.random.choice(("G98", "G99")))
+            elif pick < 0.3:
+                lines.append(self.offset())
+            elif pick < 0.35:
+                lines.append(self.random.choice(("G20", "G21")))
+            elif pick < 0.4:
+                self.absolute = not self.absolute
+                lines.append("G90" if self.absolute else "G91")
+            elif pick < 0.5:
+                lines.append(f"{second}{self.number()} L2 R{self.number(9, 12)}")
+            else:
+                lines.append(self.words(first + second))
+        if code == "G88":  # the way out is no command, so M6 would take the bottom for the position in one language
+            lines.append(f"G0 {normal}{self.number()}")
+        return "\n".join(lines)
 
     def mode(self) -> str:
         pick = self.random.randint(0, 9)
@@ -186,4 +223,4 @@ class Writer:
         body = "\n".join(self.line() for _ in range(lines))
         zeros = " ".join(f"{axis}0" for axis in AXES)  # the end of the program clears G52 in one language only
         last = f"G52 {zeros}\n" if self.shift == "G52" else ""
-        return f"G21 G17 G90 F300\nG0 X1 Y2 Z3\n{body}\n{last}M2\n"
+        return f"G21 G17 G90 G98 F300\nG0 X1 Y2 Z3\n{body}\n{last}M2\n"

@@ -2,9 +2,10 @@
 
 from aircut.canon.commands import COMMANDS, Command
 from aircut.canon.record import CHUNK, Chunk, Event, Recorder, Recording
-from aircut.canon.toolpath import COLUMNS, EXACT_PATH, EXACT_STOP, INVERSE_TIME, ROW, Kind, Toolpath
+from aircut.canon.toolpath import BY_HAND, COLUMNS, EXACT_PATH, EXACT_STOP, INVERSE_TIME, ROW, Kind, Toolpath
 
 __all__ = [
+    "BY_HAND",
     "CHUNK",
     "COLUMNS",
     "COMMANDS",

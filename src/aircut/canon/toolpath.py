@@ -33,6 +33,7 @@ class Kind(IntEnum):
 EXACT_STOP = 1  # the move stops at its end (G61.1, G9)
 EXACT_PATH = 2  # no blending with its neighbors (G61)
 INVERSE_TIME = 4  # programmed under G93; `feed` is the resulting speed
+BY_HAND = 8  # the operator moves the machine there (G88): not in the listing
 
 
 class Column(NamedTuple):
@@ -55,7 +56,7 @@ COLUMNS = (
     Column("file", "H", "index into Recording.files"),
     Column("kind", "B", "Kind: 0 traverse, 1 feed, 2 arc, 3 probe"),
     Column("plane", "B", "arc plane: 0 XY (u X, v Y), 1 ZX (u Z, v X), 2 YZ (u Y, v Z)"),
-    Column("flags", "H", "EXACT_STOP 1, EXACT_PATH 2, INVERSE_TIME 4"),
+    Column("flags", "H", "EXACT_STOP 1, EXACT_PATH 2, INVERSE_TIME 4, BY_HAND 8"),
 )
 ROW = struct.Struct("<" + "".join(column.code for column in COLUMNS))
 AXES = "xyzabc"

@@ -168,6 +168,11 @@ SPINDLE_LIMIT = Fault(
     "spindle-limit", "S{speed:g} is above the spindle's maximum: {limit:g} rpm is used", severity=WARNING
 )
 NO_PROGRAM_END = Fault("no-program-end", "the program has no M2 or M30: it ends here without a reset", severity=WARNING)
+CYCLE_INVERSE_TIME = Fault("cycle-inverse-time", "{code} cannot run under G93", "program G94 and F before")
+CYCLE_COMPENSATION = Fault("cycle-compensation", "{code} cannot run with cutter compensation", "program G40 before")
+CYCLE_SPINDLE = Fault("cycle-spindle", "{code} needs a turning spindle", "program S and M3 before")
+CYCLE_ROTARY = Fault("cycle-rotary", "{axis} moves in {code}", "turn rotary axes in a block before")
+CYCLE_BELOW = Fault("cycle-below", "{code}: R (at {r:g}) lies below the bottom of the hole ({axis}{bottom:g})")
 PROBE_COMPENSATION = Fault("E0048", "cannot probe with cutter radius compensation", "program G40 before")
 PROBE_INVERSE_TIME = Fault("E0047", "cannot probe in inverse time feed mode", "program G94 and F before")
 PROBE_NO_FEED = Fault("E0049", "cannot probe with zero feed rate", "program F before")

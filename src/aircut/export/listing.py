@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 
-from aircut.canon import COMMANDS, ROW, Chunk, Event, Kind
+from aircut.canon import BY_HAND, COMMANDS, ROW, Chunk, Event, Kind
 from aircut.canon.commands import WRITTEN
 from aircut.geometry.arcs import PLANE_AXES
 
@@ -64,7 +64,8 @@ class Listing:
             while event is not None and event.at <= at:
                 yield from self.event(event)
                 event = next(events, None)
-            yield self.move(row)
+            if not row[15] & BY_HAND:
+                yield self.move(row)
         while event is not None:
             yield from self.event(event)
             event = next(events, None)

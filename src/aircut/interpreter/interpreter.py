@@ -225,6 +225,8 @@ class Interpreter(Run):
     def set_mode(self, row: Code) -> None:
         m = self.state
         m.modal[row.group] = row
+        if not row.cycle and row.group is Group.MOTION:
+            m.cycle = None
         if row.group is Group.MOTION and (m.macro is None or m.calls != m.macro_level):
             m.motion = row
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from aircut.interpreter import auxiliary, calls, inputs, messages, modes, motion, offsets, probing, tooling
+from aircut.interpreter import auxiliary, calls, cycles, inputs, messages, modes, motion, offsets, probing, tooling
 from aircut.interpreter.arranging import code_name
 from aircut.interpreter.interpreter import Interpreter
 from aircut.interpreter.named import NAMED
@@ -21,7 +21,6 @@ def unreachable(m: State, w: Words) -> None:
 
 
 later = partial(Code, run=unreachable, supported=False)
-cycle = partial(later, group=Group.MOTION, order=Order.MOTION, axes=True, takes="rlpq", modal=True)
 compensation = partial(later, group=Group.CUTTER, order=Order.CUTTER, takes="dil")
 length = partial(later, group=Group.TOOL_LENGTH, order=Order.TOOL_LENGTH, takes="h")
 
@@ -37,18 +36,11 @@ LATER = (
     later("G51", "Scaling", group=Group.SCALING, order=Order.SCALING, axes=True, takes="ijkp"),
     later("G68", "Rotation", group=Group.ROTATION, order=Order.ROTATION, axes=True, takes="r"),
     later("G68.2", "Tilted plane", group=Group.ROTATION, order=Order.ROTATION, axes=True, takes="ijk"),
-    cycle("G73", "Drill, breaking chips"),
-    cycle("G81", "Drill"),
-    cycle("G82", "Drill and dwell"),
-    cycle("G83", "Drill, clearing chips"),
-    cycle("G85", "Bore, feed out"),
-    cycle("G86", "Bore, spindle stop, rapid out"),
-    cycle("G88", "Bore, spindle stop, manual out"),
-    cycle("G89", "Bore, dwell, feed out"),
 )
 
 CODES = (
     *motion.CODES,
+    *cycles.CODES,
     *modes.CODES,
     *offsets.CODES,
     *tooling.CODES,

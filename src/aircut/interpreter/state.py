@@ -71,6 +71,7 @@ class State:
         self.flags = 0  # of the toolpath's rows, from the path mode
         self.blend = 0.0  # G64 P
         self.thinning = 0.0  # G64 Q
+        self.cycle: Any = None  # Sticky words of the canned cycles in force
         self.exact_stop = False  # G9, for one block
         self.machine_frame = False  # G53, for one block
 

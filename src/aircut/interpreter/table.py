@@ -105,6 +105,7 @@ class Code(NamedTuple):
     wakes: str = ""  # letters that make it run while modal, beside the axis words
     fits: tuple[str, ...] = ()  # motions that it may stand beside, if not all
     alone: str = ""  # the code that the axis words beside it mean
+    cycle: bool = False  # a canned cycle: what State.cycle holds stays in force
     sole: bool = False  # the only G or M code of its block; every letter is its argument
     text: bool = False  # its P may be a string
     supported: bool = True  # False: run raises not-supported-yet
