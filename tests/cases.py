@@ -12,7 +12,7 @@ import aircut
 from aircut.api import Result
 from aircut.diagnostics import Severity
 from aircut.interpreter.running import Limits
-from aircut.machine import Machine, Tool, built_in
+from aircut.machine import Machine, Tool, built_in, load
 
 ROOT = Path(__file__).parent.parent
 CONFORMANCE = ROOT / "conformance"
@@ -68,7 +68,9 @@ def all_cases() -> list[Path]:
 
 
 def machine(case: Case, folder: Path) -> Machine:
-    made = built_in(case.head.get("axes", "XYZ"))
+    for name, text in case.files.items():
+        (folder / name).write_text(text, "utf-8")
+    made = load(folder) if "machine.toml" in case.files else built_in(case.head.get("axes", "XYZ"))
     if "error-on-missing-feed" in case.head.get("options", ""):
         made.options = msgspec.structs.replace(made.options, missing_feed="error")
     for pair in case.head.get("parameters", "").split():
@@ -84,8 +86,6 @@ def machine(case: Case, folder: Path) -> Machine:
             tool = Tool(int(number), **{k: kinds.get(k, float)(v) for k, v in fields.items()})
             made.tools[tool.id] = tool
     if case.files:
-        for name, text in case.files.items():
-            (folder / name).write_text(text, "utf-8")
         made.macros = (folder,)
     return made
 

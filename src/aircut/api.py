@@ -18,6 +18,7 @@ from aircut.canon import COMMANDS, Chunk, Kind, Recording, Toolpath
 from aircut.canon.record import Events
 from aircut.canon.toolpath import Extents
 from aircut.diagnostics import Diagnostic, Severity
+from aircut.interpreter.rotary import displayed
 from aircut.interpreter.running import Limits, Run, Settings
 from aircut.machine import Machine, Tool, built_in
 from aircut.machine import load as load_machine
@@ -117,11 +118,15 @@ class Result:
 
     @property
     def state(self) -> dict[str, Any]:
-        """Modes in force at the end, by group, and the positions: mm, degrees, mm/min, rpm."""
+        """Modes in force at the end, by group, and the positions: mm, degrees, mm/min, rpm.
+
+        position: in the work system. display: the same with the axes that wrap within one rotation.
+        """
         m = self._interpreter.state
         return {
             "modes": {(group.name or "").lower(): row.name for group, row in m.modal.items()},
             "position": dict(zip("xyzabc", m.position, strict=True)),
+            "display": dict(zip("xyzabc", displayed(m), strict=True)),
             "machine": dict(zip("xyzabc", m.machine_position(), strict=True)),
             "feed": m.feed,
             "speed": m.speed,

@@ -167,6 +167,11 @@ UNKNOWN_TOOL = Fault(
 SPINDLE_LIMIT = Fault(
     "spindle-limit", "S{speed:g} is above the spindle's maximum: {limit:g} rpm is used", severity=WARNING
 )
+INDEXER = Fault(
+    "indexer",
+    "{axis} is an indexer and moves {how}",
+    "an indexer moves alone, by G0",
+)
 NO_PROGRAM_END = Fault("no-program-end", "the program has no M2 or M30: it ends here without a reset", severity=WARNING)
 CYCLE_INVERSE_TIME = Fault("cycle-inverse-time", "{code} cannot run under G93", "program G94 and F before")
 CYCLE_COMPENSATION = Fault("cycle-compensation", "{code} cannot run with cutter compensation", "program G40 before")

@@ -11,6 +11,7 @@ from typing import Any
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.interpreter import rotary
 from aircut.interpreter.compiling import walk
 from aircut.interpreter.requests import Answer, Ask, Request
 from aircut.interpreter.state import State, out_of_range, whole
@@ -90,16 +91,9 @@ def set_parameter(m: State, w: Words) -> None:
         if value not in (0.0, 1.0):
             raise out_of_range(w, "v", "0 for G0, 1 for G1")
         m.macro_motion = int(value)
-    elif number == 5801:
-        if value <= 0.0:
-            raise out_of_range(w, "v", "a modulus above 0")
-        m.rotary_modulus = value
-    elif 5802 <= number <= 5804:
-        if value not in (0.0, 1.0, 2.0, 3.0):
-            raise out_of_range(w, "v", "rotary modes are 0 to 3")
-        if value:
-            raise Refusal(F.NOT_SUPPORTED_YET, "v", code=f"rotary mode {value:g}", title="roll-over of rotary axes")
-        m.rotary_modes[number - 5802] = value
+    elif 5801 <= number <= 5804:
+        if not rotary.set_parameter(m, number, value):
+            raise out_of_range(w, "v", "a modulus above 0" if number == 5801 else "rotary modes are 0 to 3")
     else:
         raise out_of_range(w, "p", "5730 to 5739, or 5800 to 5804")
 

@@ -13,6 +13,7 @@ from aircut.canon import EXACT_STOP, INVERSE_TIME, ROW, Kind
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.geometry import arcs
+from aircut.interpreter import rotary
 from aircut.interpreter.path import RECORDER
 from aircut.interpreter.state import INCH, PLANES, State, out_of_range, whole
 from aircut.interpreter.table import AXES, Code, Group, Order, Words
@@ -50,6 +51,8 @@ def target(m: State, w: Words) -> list[float] | None:
             if axis in w:
                 named = True
                 goal[i] = w[axis]
+        if m.rollover:
+            rotary.roll(m, w, goal)
     else:
         for i, axis in NUMBERED_AXES:
             if axis in w:
@@ -112,6 +115,8 @@ def length_of(start: list[float], end: list[float]) -> tuple[float, bool]:
 
 def write(m: State, kind: int, goal: list[float], speed: float, flags: int) -> None:
     """Move straight to a point of the program's frame, and be there."""
+    if m.indexers:
+        rotary.check_indexers(m, kind, goal)
     if m.frame is not None or m.way is not RECORDER:
         m.way.line(m, kind, m.to_space(goal), speed, flags)
     else:
@@ -126,6 +131,8 @@ def write(m: State, kind: int, goal: list[float], speed: float, flags: int) -> N
 
 def write_arc(m: State, end: list[float], center: tuple[float, float], turns: int, speed: float, flags: int) -> None:
     """Move along an arc of the program's frame (center in the plane's axes), and be at its end."""
+    if m.indexers:
+        rotary.check_indexers(m, ARC, end)
     o = m.offset
     first, second, _ = arcs.PLANE_AXES[m.plane]
     m.way.arc(m, m.to_space(end), (center[0] + o[first], center[1] + o[second]), turns, speed, flags)

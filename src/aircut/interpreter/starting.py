@@ -6,6 +6,7 @@ closing commands is that of the canonical listing.
 
 from __future__ import annotations
 
+from aircut.interpreter import rotary
 from aircut.interpreter.auxiliary import End
 from aircut.interpreter.offsets import tell_rotation, tell_shift, tell_system
 from aircut.interpreter.state import PLANES, WORK_SYSTEMS, State
@@ -18,6 +19,7 @@ ORIGIN_STEP = 20
 def begin(m: State) -> None:
     """Put the state at the start of a run, and tell the listing of it."""
     load(m)
+    m.indexers = rotary.indexers(m)
     for name in m.dialect.start:
         row = m.dialect.codes[name]
         m.modal[row.group] = row

@@ -114,6 +114,8 @@ class State:
         self.macro_motion = 0  # #5800
         self.rotary_modulus = 360.0
         self.rotary_modes = [0.0, 0.0, 0.0]
+        self.rollover = False  # a rotary mode is not 0
+        self.indexers: tuple[int, ...] = ()  # axes that move alone
 
         self.locals: list[float | None] = [None] * 34
         self.numbered: list[float | None] = [None] * 7000

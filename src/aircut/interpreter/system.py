@@ -11,6 +11,7 @@ from functools import partial
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.interpreter import rotary
 from aircut.interpreter.state import WORK_SYSTEMS, State
 from aircut.interpreter.table import Group, SystemVariable
 from aircut.machine.tools import EMPTY
@@ -87,7 +88,8 @@ def one(number: int, title: str, read: Read, unit: str = "") -> SystemVariable:
 
 
 SYSTEM = (
-    *axes(5001, "Position in the work system", lambda axis: element("position", axis)),
+    SystemVariable(5001, 5003, "Position in the work system, X Y Z", element("position"), "length"),
+    SystemVariable(5004, 5006, "Position in the work system, A B C", rotary.position),
     *axes(5081, "Position at the restart", lambda axis: null),
     *axes(5091, "Position of the last stop, machine coordinates", lambda axis: null),
     one(5100, "Line being run", attribute("line")),
