@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from aircut.canon import Toolpath
     from aircut.diagnostics import Diagnostic
     from aircut.machine import Machine
+    from aircut.planner import Plan
 
 __version__ = "0.1.0"
 
@@ -15,6 +16,7 @@ __version__ = "0.1.0"
 _LAZY = {
     "load": "aircut.api",
     "loads": "aircut.api",
+    "Plan": "aircut.planner",
     "Program": "aircut.api",
     "Result": "aircut.api",
     "Toolpath": "aircut.canon",
@@ -22,7 +24,7 @@ _LAZY = {
     "Machine": "aircut.machine",
 }
 
-__all__ = ["Diagnostic", "Machine", "Program", "Result", "Toolpath", "__version__", "load", "loads"]
+__all__ = ["Diagnostic", "Machine", "Plan", "Program", "Result", "Toolpath", "__version__", "load", "loads"]
 
 
 def __getattr__(name: str) -> Any:

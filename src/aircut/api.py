@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aircut import dialects
 from aircut.canon import COMMANDS, Chunk, Kind, Recording, Toolpath
@@ -23,6 +23,9 @@ from aircut.interpreter.running import Limits, Run, Settings
 from aircut.machine import Machine, Tool, built_in
 from aircut.machine import load as load_machine
 from aircut.source import Source
+
+if TYPE_CHECKING:
+    from aircut.planner import Plan
 
 __all__ = ["CanonicalCommand", "Limits", "Program", "Result", "load", "loads"]
 
@@ -95,6 +98,13 @@ class Result:
     def tool(self, id: int) -> Tool | None:
         """A tool as the run left it in the table; None for one that is not in it."""
         return self._interpreter.state.tools.get(id)
+
+    def plan(self, **options: Any) -> Plan:
+        """The motion in time, on the machine that it ran on. Options as of aircut.planner.plan. Raises PlanError."""
+        from aircut.planner import plan
+
+        options.setdefault("optional_stop", self.optional_stop)
+        return plan(self.recording, self._interpreter.machine, **options)
 
     @property
     def extents(self) -> Extents | None:

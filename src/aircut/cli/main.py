@@ -1,4 +1,4 @@
-"""`aircut`: run, check, plot.
+"""`aircut`: run, check, time, plot.
 
 Exit status: 0 fine, 1 the program has an error, 2 wrong usage, 130 interrupted.
 Heavy imports wait until they are needed.
@@ -15,6 +15,7 @@ import click
 from aircut import __version__
 
 FORMATS = ("summary", "canon", "json")
+TIME_FORMATS = ("table", "json", "csv")
 CHECK_FORMATS = ("text", "json", "sarif", "github")
 PICTURES = (".png", ".svg", ".html")
 
@@ -44,6 +45,21 @@ def machine_options(command: Any) -> Any:
     return command
 
 
+def world_options(command: Any) -> Any:
+    """Options of the virtual world."""
+    for option in (
+        click.option(
+            "--world",
+            type=click.Path(path_type=Path, dir_okay=False, exists=True),
+            metavar="FILE.toml",
+            help="The world to simulate (else world.toml of the machine's folder).",
+        ),
+        click.option("--simulate", is_flag=True, help="Run against a virtual world: probe, inputs, operator."),
+    ):
+        command = option(command)
+    return command
+
+
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="aircut")
 def cli() -> None:
@@ -53,13 +69,7 @@ def cli() -> None:
 @cli.command()
 @click.argument("file", type=FILE)
 @machine_options
-@click.option("--simulate", is_flag=True, help="Run against a virtual world: probe, inputs, operator.")
-@click.option(
-    "--world",
-    type=click.Path(path_type=Path, dir_okay=False, exists=True),
-    metavar="FILE.toml",
-    help="The world to simulate (else world.toml of the machine's folder).",
-)
+@world_options
 @click.option("--format", "style", type=click.Choice(FORMATS), default="summary", show_default=True)
 @click.option("-o", "--output", type=FILE, help="Write here instead of to the terminal.")
 def run(file: Path, style: str, output: Path | None, **options: Any) -> None:
@@ -79,6 +89,35 @@ def check(files: tuple[Path, ...], style: str, output: Path | None, **options: A
     from aircut.cli import checking
 
     sys.exit(checking.check(files, style, output, options))
+
+
+def planner_options(command: Any) -> Any:
+    """Options of what plans the motion."""
+    percent = click.FloatRange(0.0, 1000.0)
+    for option in (
+        click.option("--override-spindle", type=percent, default=100.0, metavar="PERCENT", help="Spindle override."),
+        click.option("--override-rapid", type=percent, default=100.0, metavar="PERCENT", help="Rapid override."),
+        click.option("--override-feed", type=percent, default=100.0, metavar="PERCENT", help="Feed override."),
+        click.option("--profile", type=click.Choice(["auto", "trapezoidal", "jerk-limited"]), default=None,
+                     help="How speeds change (else as the machine says)."),
+    ):  # fmt: skip
+        command = option(command)
+    return command
+
+
+@cli.command()
+@click.argument("file", type=FILE)
+@machine_options
+@world_options
+@planner_options
+@click.option("--lines", type=click.IntRange(0), default=10, show_default=True, help="How many costly lines to tell.")
+@click.option("--format", "style", type=click.Choice(TIME_FORMATS), default="table", show_default=True)
+@click.option("-o", "--output", type=FILE, help="Write here instead of to the terminal.")
+def time(file: Path, style: str, lines: int, output: Path | None, **options: Any) -> None:
+    """Tell how long a program takes on the machine, and where the time goes."""
+    from aircut.cli import timing
+
+    sys.exit(timing.time(file, style, lines, output, options))
 
 
 @cli.command()

@@ -28,3 +28,6 @@ def twin(name: str, as_name: str) -> ModuleType:
 if os.environ.get("AIRCUT_PYTHON_KERNELS"):
     scan = twin("scan", "aircut.kernels.scan")
     mesh = twin("mesh", "aircut.kernels.mesh")
+    pieces = twin("pieces", "aircut.kernels.pieces")
+    lookahead = twin("lookahead", "aircut.kernels.lookahead")
+    thin = twin("thin", "aircut.kernels.thin")

@@ -3,12 +3,12 @@
 compiled = False
 
 
-def _same(function):
+def cfunc(function):
     return function
 
 
 def boundscheck(_on):
-    return _same
+    return cfunc
 
 
 wraparound = cdivision = boundscheck

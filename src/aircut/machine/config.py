@@ -99,9 +99,30 @@ class Options(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Spindle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The spindle. max_speed: revolutions a minute."""
+    """The spindle. max_speed: revolutions a minute. acceleration: rpm a second; 0: at once."""
 
     max_speed: Positive = 60_000.0
+    acceleration: NotNegative = 6000.0
+
+
+class Motion(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """How the controller moves. profile: auto is jerk-limited where an axis has a jerk.
+
+    cycle: seconds, the controller's period. A jump of velocity at a joint of the path counts as what it is
+    over one; with 0 nothing may jump.
+    """
+
+    profile: Literal["auto", "trapezoidal", "jerk-limited"] = "auto"
+    cycle: NotNegative = 0.001
+
+
+class Durations(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Seconds of what is not motion of the axes."""
+
+    tool_change: NotNegative = 6.0
+    pallet: NotNegative = 0.0
+    operator: NotNegative = 0.0  # M0, M1 where it stops, M60, messages with buttons
+    input: NotNegative = 0.0  # M66, M67
 
 
 class RotaryTable(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -143,6 +164,8 @@ class File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     axes: dict[str, Axis] = {}
     options: Options = Options()
     spindle: Spindle = Spindle()
+    motion: Motion = Motion()
+    durations: Durations = Durations()
     rotary_table: RotaryTable = RotaryTable()
     tilting_spindle: TiltingSpindle = TiltingSpindle()
     system: System = System()
@@ -183,6 +206,8 @@ class Machine:
         self.auxiliary = {letter: axis for letter, axis in file.axes.items() if letter in AUXILIARY}
         self.options = file.options
         self.spindle = file.spindle
+        self.motion = file.motion
+        self.durations = file.durations
         self.rotary_table = file.rotary_table
         self.tilting_spindle = file.tilting_spindle
         self.system = file.system
@@ -279,7 +304,10 @@ def axis_of(letter: str, settings: Any, name: str = "") -> Axis:
         made = {"type": "rotary_table", "parallel_to": "XYZ"[ROTARY.index(letter)], **settings}
     if str(made["type"]).startswith("rotary"):
         made = {"min": -UNBOUNDED, "max": UNBOUNDED, **made}
-    return converted(made, Axis, name)
+    axis = converted(made, Axis, name)
+    if axis.jerk and "acceleration" not in settings:
+        raise ValueError(f"{name}.jerk needs an acceleration beside it".lstrip("."))
+    return axis
 
 
 Shape = TypeVar("Shape", bound=msgspec.Struct)

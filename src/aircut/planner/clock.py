@@ -1,0 +1,205 @@
+"""The clock beside the axes: pauses with their durations, and where settings of the motion change.
+
+A pause stands before a move; the machine is at rest there. Each command that takes time is a row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from aircut.canon.record import NUMBERS
+
+if TYPE_CHECKING:
+    from aircut.canon.record import Event, Events
+    from aircut.machine import Machine
+
+IMMEDIATE = 4  # L of M66 that does not wait
+HUD = 4  # Q of M109 that shows without a window
+
+
+class Pause(NamedTuple):
+    """Time in which the axes stand."""
+
+    at: int  # index of the move it comes before
+    kind: str  # of KINDS
+    seconds: float
+    line: int
+    file: int
+    tool: int  # in the spindle afterwards, -1 as before
+
+
+#: Kinds of pauses, with what they are called.
+KINDS = {
+    "dwell": "dwell",
+    "spindle": "spindle up and down",
+    "tool_change": "tool change",
+    "pallet": "pallet",
+    "operator": "operator",
+    "input": "inputs",
+}
+
+
+class Regime(NamedTuple):
+    """Settings of the motion from a move on."""
+
+    at: int
+    blend: float = 0.0  # mm, G64 P
+    acceleration: float = 0.0  # mm/s², G104; 0 the axes' own
+    deceleration: float = 0.0
+    jerk: float = 1.0  # share of the axes' own, G104 J
+    rapid: float = 0.0  # mm/s, G103; 0 the axes' own
+    feed_factor: float = 1.0
+    rapid_factor: float = 1.0
+    thinning: float = 0.0  # mm, G64 Q
+
+    @property
+    def row(self) -> tuple[float, ...]:
+        """What kernels.pieces.lay wants of it."""
+        dynamics = (self.acceleration, self.deceleration, self.jerk)
+        return (self.blend, *dynamics, self.rapid, self.feed_factor, self.rapid_factor)
+
+
+class Overrides(NamedTuple):
+    """Overrides of the operator, 1 as programmed."""
+
+    feed: float = 1.0
+    rapid: float = 1.0
+    spindle: float = 1.0
+
+
+class Clock:
+    """Reads the events of a run: fills `pauses` and `regimes`."""
+
+    def __init__(self, machine: Machine, overrides: Overrides, optional_stop: bool) -> None:
+        self.machine = machine
+        self.durations = machine.durations
+        self.overrides = overrides
+        self.optional_stop = optional_stop
+        self.pauses: list[Pause] = []
+        self.halts: list[int] = []  # indices of moves before which the machine stands
+        self.regimes = [Regime(0, feed_factor=overrides.feed, rapid_factor=overrides.rapid)]
+        self.spinning = 0.0  # revolutions a minute, negative counterclockwise
+        self.direction = 0
+        self.speed = 0.0
+        self.tool: int | None = None
+        self.by_macro = False
+
+    def read(self, events: Events) -> None:
+        """Read all events. Only those that matter are looked at one by one."""
+        import numpy as np
+
+        names = np.frombuffer(events.name, np.uint8) if len(events) else np.empty(0, np.uint8)
+        wanted = np.isin(names, [NUMBERS[name] for name in ACTIONS])
+        for index in np.flatnonzero(wanted).tolist():
+            event = events[index]
+            ACTIONS[event.name](self, event)
+
+    def pause(self, event: Event, kind: str, seconds: float, tool: int = -1) -> None:
+        if event.line or seconds:
+            self.halts.append(event.at)
+        if seconds or tool >= 0:
+            self.pauses.append(Pause(event.at, kind, seconds, event.line, event.file, tool))
+
+    def change(self, event: Event, **settings: Any) -> None:
+        self.regimes.append(self.regimes[-1]._replace(at=event.at, **settings))
+
+    # --- pauses
+
+    def dwell(self, event: Event) -> None:
+        self.pause(event, "dwell", event.values[0])
+
+    def spin(self, event: Event, direction: int) -> None:
+        self.direction = direction
+        self.turn(event)
+
+    def set_speed(self, event: Event) -> None:
+        self.speed = event.values[1]
+        if self.direction:
+            self.turn(event)
+
+    def turn(self, event: Event) -> None:
+        """Bring the spindle to its speed."""
+        most = self.machine.spindle.max_speed
+        wanted = self.direction * min(self.speed * self.overrides.spindle, most)
+        change = abs(wanted - self.spinning)
+        self.spinning = wanted
+        if change:
+            rate = self.machine.spindle.acceleration
+            self.pause(event, "spindle", change / rate if rate else 0.0)
+
+    def change_tool(self, event: Event) -> None:
+        tool = event.values[0]
+        new = tool != self.tool and not self.by_macro
+        self.tool = tool
+        self.pause(event, "tool_change", self.durations.tool_change if new else 0.0, tool)
+
+    def tool_macro(self, event: Event) -> None:
+        self.by_macro = bool(event.values[0])
+
+    def pallet(self, event: Event) -> None:
+        self.pause(event, "pallet", self.durations.pallet)
+
+    def operator(self, event: Event) -> None:
+        self.pause(event, "operator", self.durations.operator)
+
+    def optional(self, event: Event) -> None:
+        if self.optional_stop:
+            self.operator(event)
+
+    def message(self, event: Event) -> None:
+        if len(event.values) > 1 and event.values[1] != HUD:
+            self.operator(event)
+
+    def wait_input(self, event: Event) -> None:
+        _, mode, timeout = event.values
+        seconds = 0.0 if mode % 10 == IMMEDIATE else self.durations.input
+        self.pause(event, "input", min(seconds, timeout) if timeout >= 0.0 else seconds)
+
+    def stand(self, event: Event) -> None:
+        """What takes no time of its own, but is done at rest."""
+        self.halts.append(event.at)
+
+    # --- settings
+
+    def blend(self, event: Event) -> None:
+        self.change(event, blend=event.values[0])
+
+    def thinning(self, event: Event) -> None:
+        self.change(event, thinning=event.values[0])
+
+    def traverse_rate(self, event: Event) -> None:
+        self.change(event, rapid=event.values[0] / 60.0)
+
+    def dynamics(self, event: Event) -> None:
+        acceleration, deceleration, jerk = event.values
+        self.change(event, acceleration=acceleration, deceleration=deceleration, jerk=max(jerk / 100.0, SLOWEST))
+
+    def feed_override(self, event: Event, on: bool) -> None:
+        self.change(event, feed_factor=self.overrides.feed if on else 1.0)
+
+
+SLOWEST = 0.05  # share of the jerk that is left at G104 J0
+
+ACTIONS: dict[str, Callable[[Clock, Event], None]] = {
+    "DWELL": Clock.dwell,
+    "START_SPINDLE_CLOCKWISE": lambda clock, event: clock.spin(event, 1),
+    "START_SPINDLE_COUNTERCLOCKWISE": lambda clock, event: clock.spin(event, -1),
+    "STOP_SPINDLE_TURNING": lambda clock, event: clock.spin(event, 0),
+    "SET_SPINDLE_SPEED": Clock.set_speed,
+    "CHANGE_TOOL": Clock.change_tool,
+    "TOOL_CHANGE_MACRO": Clock.tool_macro,
+    "PALLET_SHUTTLE": Clock.pallet,
+    "PROGRAM_STOP": Clock.operator,
+    "OPTIONAL_PROGRAM_STOP": Clock.optional,
+    "MESSAGE": Clock.message,
+    "WAIT_INPUT": Clock.wait_input,
+    "PLC_CALL": Clock.stand,
+    "HOME_AXES": Clock.stand,
+    "SET_MOTION_CONTROL_BLEND": Clock.blend,
+    "SET_NAIVECAM_TOLERANCE": Clock.thinning,
+    "SET_TRAVERSE_RATE": Clock.traverse_rate,
+    "SET_DYNAMICS": Clock.dynamics,
+    "ENABLE_FEED_OVERRIDE": lambda clock, event: clock.feed_override(event, True),
+    "DISABLE_FEED_OVERRIDE": lambda clock, event: clock.feed_override(event, False),
+}

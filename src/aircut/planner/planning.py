@@ -1,0 +1,154 @@
+"""From a recording to a plan."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from aircut.canon import Kind, Toolpath
+from aircut.canon.toolpath import AXES
+from aircut.kernels import lookahead
+from aircut.kernels import pieces as kernel
+from aircut.planner.clock import Clock, Overrides, Regime
+from aircut.planner.limits import Limits, PlanError, of_machine
+from aircut.planner.path import Path
+from aircut.planner.plan import Plan, Profile
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from aircut.canon import Recording
+    from aircut.machine import Machine
+    from aircut.planner.clock import Pause
+
+#: Part of what an axis can do that a jump at a joint may take. The rest is for the motion on both sides.
+SHARE = 0.5
+
+
+def plan(
+    recording: Recording,
+    machine: Machine,
+    profile: str | None = None,
+    overrides: Overrides | None = None,
+    limits: Limits | None = None,
+    optional_stop: bool = False,
+) -> Plan:
+    """Plan a run on a machine.
+
+    profile: auto, trapezoidal, jerk-limited; None as the machine says. limits: in place of the machine's.
+    Raises PlanError.
+    """
+    overrides = overrides or Overrides()
+    for name, value in zip(overrides._fields, overrides, strict=True):
+        if not (isfinite(value) and value > 0.0):
+            raise PlanError(f"{name} override of {100 * value:g} %: it must be above zero, or nothing ever ends")
+    clock = Clock(machine, overrides, optional_stop)
+    clock.read(recording.events)
+    limits = limits or of_machine(machine, profile)
+    return plan_moves(recording.toolpath, limits, clock.regimes, clock.halts, clock.pauses)
+
+
+def plan_moves(
+    toolpath: Toolpath,
+    limits: Limits,
+    regimes: Sequence[Regime] = (Regime(0),),
+    halts: Sequence[int] = (),
+    pauses: Sequence[Pause] = (),
+) -> Plan:
+    """Plan moves under settings that change on the way. Raises PlanError."""
+    import numpy as np
+
+    check(toolpath, limits)
+    rows = None
+    path_moves = toolpath
+    at = np.array([regime.at for regime in regimes], np.int64)
+    stops = np.sort(np.array(halts, np.int64))
+    if any(regime.thinning > 0.0 for regime in regimes):
+        from aircut.planner.thinning import thinned
+
+        rows = thinned(toolpath, regimes, stops)
+        columns = {name: column[rows] for name, column in toolpath.columns.items()}
+        path_moves = Toolpath(columns, toolpath.start)
+        at, stops = np.searchsorted(rows, at), np.searchsorted(rows, stops)
+    smooth = limits.jerk_limited
+    laid = lay(path_moves, limits, regimes, at, stops, smooth)
+    path = Path(path_moves, laid["length"], laid["move"], laid["shape"], laid["offset"], smooth)
+    profile, until = trapezoidal(laid)
+    return Plan(toolpath, path, profile, until, rows, list(pauses), limits)
+
+
+def check(toolpath: Toolpath, limits: Limits) -> None:
+    """Refuse what cannot be planned. Raises PlanError."""
+    import numpy as np
+
+    for i, axis in enumerate(AXES):
+        column = toolpath.columns[axis]
+        if not len(column):
+            continue
+        low, high = float(column.min()), float(column.max())
+        if not (isfinite(low) and isfinite(high)):
+            line = toolpath.line[np.flatnonzero(~np.isfinite(column))[0]]
+            raise PlanError(f"line {line}: a position that is not finite on axis {axis.upper()}")
+        if (low != toolpath.start[i] or high != low) and limits.velocity[i] is None:
+            line = toolpath.line[np.flatnonzero(column != toolpath.start[i])[0]]
+            raise PlanError(f"line {line}: axis {axis.upper()} moves, and the machine has no limits for it")
+
+
+def lay(
+    toolpath: Toolpath,
+    limits: Limits,
+    regimes: Sequence[Regime],
+    regime_at: NDArray[Any],
+    stops: NDArray[Any],
+    smooth: bool,
+) -> dict[str, NDArray[Any]]:
+    """The pieces of the path with their bounds, as columns named as in kernels.pieces.lay. Raises PlanError."""
+    import numpy as np
+
+    count = len(toolpath)
+    room = 2 * count
+    floats = {name: np.empty(room) for name in ("length", "speed", "accel", "decel", "jerk", "enter", "offset")}
+    move, shape = np.empty(room, np.int32), np.empty(room, np.uint8)
+    bounds = [value if value is not None else 1.0 for value in (*limits.velocity, *limits.acceleration)]
+    bounds += [value if smooth and value is not None and isfinite(value) else 1e300 for value in limits.jerk]
+    order = ("x", "y", "z", "a", "b", "c", "u", "v", "feed", "turns", "kind", "plane", "flags")
+    got = kernel.lay(
+        *[np.ascontiguousarray(toolpath.columns[name]) for name in order],
+        np.array([*toolpath.start, *[0.0] * 6]),
+        np.array(bounds),
+        limits.cycle,
+        SHARE,
+        smooth,
+        stops.astype(np.int64),
+        regime_at.astype(np.int64),
+        np.array([regime.row for regime in regimes]).ravel(),
+        np.zeros(68),
+        *floats.values(),
+        move,
+        shape,
+    )
+    if got < 0:
+        row = -1 - got
+        kind = Kind(int(toolpath.kind[row])).name.lower()
+        raise PlanError(f"line {toolpath.line[row]}: a {kind} move at a feed of {toolpath.feed[row]:g} never ends")
+    columns: dict[str, NDArray[Any]] = {**floats, "move": move, "shape": shape}
+    return {name: column[:got] for name, column in columns.items()}
+
+
+def trapezoidal(laid: dict[str, NDArray[Any]]) -> tuple[Profile, NDArray[np.float64]]:
+    """Speeds with limited acceleration; and when each piece ends, s."""
+    import numpy as np
+
+    length, count = laid["length"], len(laid["length"])
+    joint, top, time = np.empty(count + 1), np.empty(count), np.empty(count)
+    if count:
+        lookahead.brake(length, laid["speed"], laid["decel"], laid["enter"], joint)
+        lookahead.trapezoids(length, laid["speed"], laid["accel"], laid["decel"], joint, top, time)
+    until = np.cumsum(time)
+    way = np.cumsum(length) - length
+    jerk = np.full(count, np.inf)
+    profile = Profile(until - time, way, length, joint[:-1], top, joint[1:], laid["accel"], laid["decel"], jerk)
+    return profile, until
