@@ -86,7 +86,7 @@ class Writer:
 
     def line(self) -> str:
         kinds = (self.straight, self.straight, self.arc, self.arc, self.radius_arc, self.mode, self.offset,
-                 self.setting, self.auxiliary, self.machine, self.full_circle, self.cycle)  # fmt: skip
+                 self.setting, self.auxiliary, self.machine, self.full_circle, self.cycle, self.polar)  # fmt: skip
         text = self.random.choice(kinds)()
         if self.random.random() < 0.1:
             text = f"N{self.random.randint(1, 9999)} {text}"
@@ -153,7 +153,7 @@ class Writer:
             elif pick < 0.3:
                 lines.append(self.offset())
             elif pick < 0.35:
-                lines.append(self.random.choice(("G20", "G21")))
+                lines.append(self.units())
             elif pick < 0.4:
                 self.absolute = not self.absolute
                 lines.append("G90" if self.absolute else "G91")
@@ -165,6 +165,26 @@ class Writer:
             lines.append(f"G0 {normal}{self.number()}")
         return "\n".join(lines)
 
+    def polar(self) -> str:
+        """A move by radius and angle, or a ring of holes: in the XY plane, where both languages have them."""
+        if self.plane != "G17":
+            return self.straight()
+        self.moving = False
+        words = f"@{self.value()} ^{self.number(-400, 400)}"
+        if self.random.random() < 0.3:  # a radius alone has no angle at the pole, which one language refuses
+            words = (
+                f"^{self.value()}" if self.absolute else self.random.choice((f"^{self.value()}", f"@{self.value()}"))
+            )
+        if self.random.random() < 0.3 and not self.inverse:
+            return f"G81 {words} Z-3 R{self.number(-1 if self.absolute else -3, 9)} L2\n^{self.number(0, 90)}"
+        code = self.random.choice(("G0", "G1"))
+        rise = f" Z{self.value()}" if self.random.random() < 0.3 else ""
+        return f"{code} {words}{rise}" + (self.feed() if code == "G1" else "")
+
+    def units(self) -> str:
+        """Other units; cycles put tolerances back in force as numbers in one language, as lengths in the other."""
+        return self.random.choice(("G20\nG64 P0 Q0", "G21\nG64 P0 Q0"))
+
     def mode(self) -> str:
         pick = self.random.randint(0, 9)
         if pick == 0:
@@ -174,7 +194,7 @@ class Writer:
             self.absolute = not self.absolute
             return "G90" if self.absolute else "G91"
         if pick == 2:
-            return self.random.choice(("G20", "G21"))
+            return self.units()
         if pick == 3:
             self.inverse = not self.inverse
             return "G93" if self.inverse else "G94 F200"

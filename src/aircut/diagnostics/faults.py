@@ -173,6 +173,9 @@ INDEXER = Fault(
     "an indexer moves alone, by G0",
 )
 NO_PROGRAM_END = Fault("no-program-end", "the program has no M2 or M30: it ends here without a reset", severity=WARNING)
+POLAR_MIX = Fault("polar-mix", "{word} together with a polar word", "@ and ^ stand for both axes of the plane")
+POLAR_MACHINE = Fault("polar-machine", "polar words with G53", "G53 takes positions of the machine's axes")
+POLAR_POLE = Fault("polar-pole", "an incremental polar move cannot start at the pole: it has no angle there")
 CYCLE_INVERSE_TIME = Fault("cycle-inverse-time", "{code} cannot run under G93", "program G94 and F before")
 CYCLE_COMPENSATION = Fault("cycle-compensation", "{code} cannot run with cutter compensation", "program G40 before")
 CYCLE_SPINDLE = Fault("cycle-spindle", "{code} needs a turning spindle", "program S and M3 before")

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
-from aircut.interpreter.table import AXES, Code, Dialect
+from aircut.interpreter.table import AXES, POLAR_WORDS, Code, Dialect, Group
 
 MEANINGS = {
     "p": "P is a number: of a subroutine, a system, seconds or turns, as the code has it",
@@ -61,7 +61,7 @@ def arrange(rows: Sequence[Code], letters: Sequence[str], motion: Code | None, d
         return Steps(tuple(rows), True)
     exclusive(rows)
     rows = [row for row in rows if not (row.weak and rival(row, rows))]
-    axis_letters = [x for x in letters if x in AXES and not any(x in row.takes for row in rows)]
+    axis_letters = [x for x in letters if x in AXES + POLAR_WORDS and not any(x in row.takes for row in rows)]
     takers = [row for row in rows if row.axes]
     if axis_letters and len(takers) > 1:
         raise Refusal(F.AXIS_CONFLICT, axis_letters[0], first=takers[0].name, second=takers[1].name)
@@ -73,7 +73,10 @@ def arrange(rows: Sequence[Code], letters: Sequence[str], motion: Code | None, d
         if row.fits and takers and takers[0].name not in row.fits:
             raise Refusal(F.MISFIT, "g", code=row.name, fits=", ".join(row.fits), motion=takers[0].name)
     for letter in axis_letters:
-        if letter not in axes:
+        if letter in POLAR_WORDS:
+            if takers and takers[0].group is not Group.MOTION:
+                raise Refusal(F.UNUSED_WORD, letter, word=letter)
+        elif letter not in axes:
             wanted = "".join(a for a in AXES if a in axes or a == letter).upper()
             raise Refusal(F.AXIS_DISABLED, letter, axis=letter.upper(), wanted=wanted)
     if not axis_letters and not (takers and any(letter in takers[0].wakes for letter in letters)):
@@ -136,7 +139,7 @@ def implied(rows: Sequence[Code], motion: Code | None, dialect: Dialect, axis_le
 def used(rows: Sequence[Code], letters: Sequence[str], dialect: Dialect) -> None:
     """Refuse words that no code takes, or that two codes take."""
     for letter in letters:
-        if letter in AXES or letter in dialect.items:
+        if letter in AXES + POLAR_WORDS or letter in dialect.items:
             continue
         takers = [row for row in rows if letter in row.takes]
         if not takers:

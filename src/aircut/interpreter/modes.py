@@ -75,6 +75,11 @@ def distance(absolute: bool, m: State, w: Words) -> None:
     m.absolute = absolute
 
 
+def polar(on: bool, m: State, w: Words) -> None:
+    """G15, G16: whether the plane's words are radius and angle."""
+    m.polar = on
+
+
 def arc_distance(absolute: bool, m: State, w: Words) -> None:
     """G90.1, G91.1."""
     if m.arc_absolute != absolute:
@@ -159,7 +164,8 @@ def mode(name: str, title: str, run: object, group: Group, **more: object) -> Co
 
 
 CODES = (
-    mode("G15", "Cartesian coordinates", partial(off, ""), Group.POLAR),
+    mode("G15", "Cartesian coordinates", partial(polar, False), Group.POLAR),
+    mode("G16", "Polar coordinates", partial(polar, True), Group.POLAR),
     mode("G17", "XY plane", partial(plane, 0), Group.PLANE),
     mode("G18", "XZ plane", partial(plane, 1), Group.PLANE),
     mode("G19", "YZ plane", partial(plane, 2), Group.PLANE),

@@ -13,7 +13,7 @@ from aircut.canon import EXACT_STOP, INVERSE_TIME, ROW, Kind
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.geometry import arcs
-from aircut.interpreter import rotary
+from aircut.interpreter import polar, rotary
 from aircut.interpreter.path import RECORDER
 from aircut.interpreter.state import INCH, PLANES, State, out_of_range, whole
 from aircut.interpreter.table import AXES, Code, Group, Order, Words
@@ -58,6 +58,8 @@ def target(m: State, w: Words) -> list[float] | None:
             if axis in w:
                 named = True
                 goal[i] += w[axis] * (unit if i < 3 else 1.0)
+    if m.polar or "@" in w or "^" in w:
+        named = polar.place(m, w, goal) or named
     if max(goal) > FAR or min(goal) < -FAR:
         axis = max((abs(goal[i]), axis) for i, axis in NUMBERED_AXES)[1]
         raise Refusal(
@@ -194,7 +196,7 @@ def arc(turn: int, m: State, w: Words) -> None:
     if "r" in w:
         if centered:
             raise Refusal(F.ARC_CENTER_AND_RADIUS, "r")
-        if not any(AXES[i] in w for i in axes[:2]):
+        if not any(AXES[i] in w for i in axes[:2]) and "@" not in w and "^" not in w:
             raise Refusal(F.ARC_NO_END, "r")
         center = center_by_radius(m, w, turn, here, there)
     elif centered:

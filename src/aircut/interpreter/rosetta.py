@@ -26,7 +26,6 @@ length = partial(later, group=Group.TOOL_LENGTH, order=Order.TOOL_LENGTH, takes=
 
 #: Codes of the language that cannot be run yet: programs that use them are refused.
 LATER = (
-    later("G16", "Polar coordinates", group=Group.POLAR, order=Order.POLAR),
     compensation("G41", "Cutter compensation left"),
     compensation("G41.1", "Dynamic cutter compensation left"),
     compensation("G42", "Cutter compensation right"),
@@ -50,11 +49,6 @@ CODES = (
     *probing.CODES,
     *calls.CODES,
     *LATER,
-)
-
-POLAR = (
-    later("@", "Polar radius", group=Group(0), order=Order.POLAR),
-    later("^", "Polar angle", group=Group(0), order=Order.POLAR),
 )
 
 #: Named in the documents, or known from relatives of the language, but not in it (AMB-COD-2, AMB-CYC-3).
@@ -113,7 +107,7 @@ ROSETTA = Dialect(
     title="RosettaCNC",
     interpreter=Interpreter,
     codes={key(row): row for row in CODES},
-    items={row.name.lower(): row for row in (*modes.ITEMS, *auxiliary.ITEMS, *POLAR)},
+    items={row.name.lower(): row for row in (*modes.ITEMS, *auxiliary.ITEMS)},
     unsupported=UNSUPPORTED,
     ranges=RANGES,
     system=SYSTEM,

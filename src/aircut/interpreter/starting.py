@@ -108,7 +108,7 @@ def finish(m: State, end: End) -> None:
     if m.stop_code == 30.0:
         out.event("PALLET_SHUTTLE")
     m.absolute = True
-    m.arc_absolute = False
+    m.arc_absolute = m.polar = False
     m.unit = 1.0
     m.flags = 0
     m.blend = m.thinning = 0.0

@@ -66,6 +66,7 @@ class State:
         self.unit = 1.0  # mm a program unit
         self.absolute = True
         self.arc_absolute = False
+        self.polar = False
         self.inverse_time = False
         self.plane = 0
         self.flags = 0  # of the toolpath's rows, from the path mode

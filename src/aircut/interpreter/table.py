@@ -16,6 +16,7 @@ Words = Mapping[str, Any]  # letter -> value, of one block
 Handler = Callable[["State", Words], "Generator[Request, Any, None] | None"]
 
 AXES = "xyzabc"
+POLAR_WORDS = "@^"  # radius and angle: axis words too, of motion alone
 
 
 class Group(IntFlag):

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 FIRST_BATCH = 16  # lines scanned when the program has jumped
 #: Literal numbers that do not decide what a line means, so that lines differing in them share a shape.
-LITERAL = re.compile(r"(?<=[abcdefhijklpqrstuvwxyz=\[+\-*/,])(\d+\.?\d*|\.\d+)(?![\d.])")
+LITERAL = re.compile(r"(?<=[abcdefhijklpqrstuvwxyz@^=\[+\-*/,])(\d+\.?\d*|\.\d+)(?![\d.])")
 INFINITE = float("inf")
 LABEL = re.compile(r"/?(?:n\d+)?\x01*")
 MARK_START = re.compile(r"/?\x01*(?:n\d+)?\x01*" + MARK.pattern)
