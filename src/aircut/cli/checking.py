@@ -32,9 +32,7 @@ def check(files: Sequence[Path], style: str, output: Path | None, options: dict[
     return int(any(d.severity is Severity.ERROR for d in diagnostics))
 
 
-def write(
-    diagnostics: Sequence[Diagnostic], style: str, output: Path | None, interpreters: Sequence[Run]
-) -> None:
+def write(diagnostics: Sequence[Diagnostic], style: str, output: Path | None, interpreters: Sequence[Run]) -> None:
     from aircut.files import replacing
 
     lines = common.lines_of(*interpreters)

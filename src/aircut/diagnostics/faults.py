@@ -114,6 +114,20 @@ BLOCK_BUDGET = Fault(
     "if the program is meant to run that long, raise --max-blocks",
     why="Blocks run again by loops, GOTO, calls and M47 count; the limit stops programs that never end.",
 )
+START_OUTSIDE = Fault(
+    "start-outside",
+    "there is no line {line} to start from: the program has {count}",
+)
+START_NOT_REACHED = Fault(
+    "start-not-reached",
+    "the program never comes to line {line}, where it was to start",
+    "give a line that the program runs through; lines of subroutines count when they are called",
+)
+START_COMPENSATED = Fault(
+    "start-compensated",
+    "the program cannot start at line {line}: radius compensation ({code}) is on there",
+    "start before the move that leads in, or after G40",
+)
 ENDLESS_LOOP = Fault(
     "endless-loop",
     "lines {first} to {last} repeat for ever: a whole pass changes nothing",

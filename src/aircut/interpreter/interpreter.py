@@ -10,13 +10,14 @@ from typing import Any, NamedTuple, NoReturn
 from aircut.canon import CHUNK, ROW, Chunk
 from aircut.diagnostics import Fault, Frame, Refusal, Span
 from aircut.diagnostics import faults as F
-from aircut.interpreter import macros, starting
+from aircut.interpreter import macros, path, starting
 from aircut.interpreter.arranging import Steps, arrange, code_name, find
 from aircut.interpreter.auxiliary import End, Restart
 from aircut.interpreter.calls import ARGUMENTS, Call, Return
 from aircut.interpreter.compiling import FAILURES, explain
+from aircut.interpreter.midway import Midway
 from aircut.interpreter.requests import Request
-from aircut.interpreter.running import Run, Settings, Stopped
+from aircut.interpreter.running import WHOLE, Mode, Run, Settings, Stop, Stopped
 from aircut.interpreter.state import State
 from aircut.interpreter.table import Code, Dialect, Group, Words
 from aircut.interpreter.tooling import TOOL_CHANGE
@@ -50,6 +51,7 @@ class Level(NamedTuple):
     left: int  # repetitions still to do
     locals: list[float | None]
     scope: dict[str, float | None]
+    moves: int  # made before it
 
 
 class Interpreter(Run):
@@ -68,6 +70,8 @@ class Interpreter(Run):
         self.repeated = 0
         self.passes = 0
         self.watched: tuple[int, int, tuple[Any, ...]] | None = None
+        self.midway: Midway | None = None  # on the way to the start, while motion is only watched
+        self.mark = 0  # line of the main program at which `pass_mark` has something to do, from 1; 0 none
         #: A code that asks the world: its conversation, the codes still to run, and the block's words.
         self.talk: tuple[Generator[Request, Any, None], tuple[Code, ...], Words] | None = None
 
@@ -96,19 +100,97 @@ class Interpreter(Run):
             self.tell(F.NOT_UTF8.at(self.unit.source.name, Span(1, 1, 2)))
         elif not len(self.unit.source) or not any(self.unit.source.classes):
             self.tell(F.EMPTY_PROGRAM.at(self.unit.source.name, Span()))
-        elif self.settings.keep_going or not self.failed:
+        elif (self.settings.keep_going or not self.failed) and self.prepare():
             try:
                 yield from self.blocks()
             except Stopped:
                 pass
             self.check_rest()
+        if self.midway is not None:
+            self.midway.drop(m)
+            m.out.first = 0
         m.out.event("ON_RESET")
         m.out.event("ON_RESET")
         yield m.out.take()
 
+    def prepare(self) -> bool:
+        """Set the compile mode, and the mark that the run starts or stops at; False if there is no such line."""
+        m, settings, count = self.state, self.settings, len(self.unit.source)
+        m.compile_mode = settings.mode
+        self.mark = settings.stop_line
+        if settings.start is not None:
+            self.mark = m.compile_line = settings.start.line
+            self.midway = Midway(settings.start, m.to_space(m.position))
+            if settings.start.stop is not None:
+                m.stopped = list(settings.start.stop.place)
+        if 0 <= self.mark <= count:
+            return True
+        self.tell(F.START_OUTSIDE.at(self.unit.source.name, Span(), line=self.mark, count=count))
+        return False
+
+    def bound(self) -> int:
+        """The line at which the main loop looks up: the routine's end; 0, at every line, where the mark lies in it."""
+        if (
+            self.mark
+            and self.unit is self.units[self.files[0]]
+            and self.routine == self.unit.structure.routine(self.mark - 1)
+        ):
+            return 0
+        return self.routine.end
+
+    def pass_mark(self, line: int) -> None:
+        """Before a line of the routine with the mark: the start, or the stop. Raises Refusal, Stopped."""
+        m = self.state
+        if self.midway is not None:
+            if not self.midway.arrived(m, line + 1):
+                return
+            self.line = line
+            m.line = m.out.line = line + 1
+            self.arrival = self.midway.begin(m, line + 1)
+            self.midway = None
+            self.mark = self.settings.stop_line
+        if self.midway is None and line + 1 == self.settings.stop_line:
+            self.line = line
+            path.flush(m)
+            self.halt()
+
+    def halt(self) -> NoReturn:
+        """STOP: the run ends before its line, to be resumed; in a subroutine, before the call. Raises Stopped."""
+        m = self.state
+        first = self.stack[0] if self.stack else None
+        line, moves = (first.line, first.moves) if first else (self.line + 1, m.out.moves)
+        place = m.to_space(m.position)
+        m.stopped = list(place)
+        self.stop = Stop(self.files[0], line, moves, tuple(place))
+        m.out.line = 0
+        raise Stopped
+
     def check_structure(self, unit: Unit) -> None:
         for line, refusal in unit.structure.faults:
             self.tell_refusal(refusal, unit, line, stack=False)
+
+    def enter_command(self, unit: Unit) -> None:
+        """Make ready for a command of its own, with the modes and global variables as they are."""
+        m = self.state
+        self.unit = self.units[self.files[0]] = unit
+        self.routine = unit.entry()
+        self.diagnostics = []
+        self._told.clear()
+        self.repeated = self.passes = 0
+        self.watched = self.ended = None
+        m.locals, m.scope = [None] * 34, {}
+        self.check_structure(unit)
+
+    def leave_command(self) -> None:
+        """Nothing of a command that failed stays open."""
+        m = self.state
+        if self.stack:
+            self.unit = self.stack[0].unit
+            self.stack.clear()
+        m.calls = m.out.file = m.out.line = 0
+        m.transfer = self.talk = None
+        m.exact_stop = m.machine_frame = False
+        path.flush(m)
 
     def check_rest(self) -> None:
         """Lines that did not run are still read, so that one run shows all faults of form."""
@@ -156,13 +238,20 @@ class Interpreter(Run):
         plans = self.plans
         line = self.routine.first
         while True:
-            unit, end = self.unit, self.routine.end
+            unit, end = self.unit, self.bound()
             classes, seen, cache = unit.source.classes, unit.seen, unit.plain
             here = True
             while here:
                 if line >= end:
-                    line = self.run_off()
-                    break
+                    if line >= self.routine.end:
+                        line = self.run_off()
+                        break
+                    try:
+                        self.pass_mark(line)
+                    except Refusal as refusal:
+                        self.tell_refusal(refusal, unit, line)
+                        raise Stopped from None
+                    end = self.bound()
                 kind = classes[line]
                 seen[line] = 1
                 if kind == BLANK:
@@ -197,14 +286,16 @@ class Interpreter(Run):
                 except Refusal as refusal:
                     self.tell_refusal(refusal, self.unit, self.line)
                     if not self.settings.keep_going or refusal.fault in FATAL:
-                        out.line = 0
-                        raise Stopped from None
+                        self.halt()
                     self.recover(refusal)
                     line = unit.structure.otherwise.get(self.line, self.line + 1)
                     here = unit is self.unit
                 if len(out.rows) >= FULL:
                     self.check_moves()
-                    yield out.take()
+                    if self.midway is None:
+                        yield out.take()
+                    else:
+                        self.midway.drop(m)
 
     def recover(self, refusal: Refusal) -> None:
         """Make ready for the block after one at fault."""
@@ -341,7 +432,11 @@ class Interpreter(Run):
         talk, rest, w = self.talk
         self.talk = None
         self.state.asked += 1
-        yield from talk
+        if self.midway is None:
+            yield from talk
+        else:
+            for _ in talk:  # before the start nobody is asked: not executed
+                pass
         self.carry_out(rest, w)
         if self.talk is not None:
             yield from self.converse()
@@ -484,7 +579,7 @@ class Interpreter(Run):
         if len(self.stack) >= DEEPEST_CALL:
             raise Refusal(F.TOO_DEEP, limit=DEEPEST_CALL, what="calls")
         m = self.state
-        level = Level(self.unit, self.routine, back, m.line, call, call.repeat, m.locals, m.scope)
+        level = Level(self.unit, self.routine, back, m.line, call, call.repeat, m.locals, m.scope, m.out.moves)
         self.stack.append(level)
         m.calls = len(self.stack)
         return self.enter(level, unit, routine)
@@ -576,7 +671,9 @@ class Interpreter(Run):
                 if not self.settings.keep_going:
                     raise Stopped
             return self.leave()
-        if not self.unit.percent:
+        if self.settings.mode is Mode.MDI:
+            raise Stopped
+        if not self.unit.percent and self.settings.mode in WHOLE:
             last = self.routine.end - 1
             while last > 0 and not self.unit.seen[last]:
                 last -= 1
@@ -599,4 +696,6 @@ class Interpreter(Run):
 
     def finish(self, end: End) -> None:
         self.ended = end
+        if self.midway is not None:
+            self.tell(F.START_NOT_REACHED.at(self.files[0], Span(), line=self.midway.start.line))
         starting.finish(self.state, end)

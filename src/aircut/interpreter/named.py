@@ -17,7 +17,6 @@ from aircut.interpreter.table import NamedParameter
 from aircut.machine import Axis
 from aircut.machine.config import AUXILIARY, AXIS_TYPES, KINEMATICS, LINEAR, ROTARY
 
-PROGRAM = 2  # compile.mode_program: what is compiled where nobody says otherwise
 MACHINE_TYPES = ("mill",)
 
 
@@ -112,9 +111,9 @@ def offsets(section: str, title: str, arms: str) -> Iterator[NamedParameter]:
 
 CNC = (
     NamedParameter("cnc.compile.mode", "What is being compiled, see `compile.mode_…`",
-                   lambda m: float(getattr(m, "compile_mode", PROGRAM))),
+                   lambda m: float(m.compile_mode)),
     NamedParameter("cnc.compile.line", "Line that the program is started or resumed from",
-                   lambda m: float(getattr(m, "compile_line", 0))),
+                   lambda m: float(m.compile_line)),
     NamedParameter("cnc.machine_type", "Machine type: 0 mill", lambda m: float(MACHINE_TYPES.index(m.machine.type))),
     NamedParameter("cnc.kinematics_model", "Kinematics model, see `kinematics.model`",
                    lambda m: float(KINEMATICS.index(m.machine.kinematics))),

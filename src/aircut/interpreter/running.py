@@ -1,8 +1,12 @@
-"""What every interpreter of programs has: its files, what it has to tell, and how it is told to run."""
+"""What every interpreter of programs has: its files, what it has to tell, and how it is told to run.
+
+Sources of the compile modes: 000 section 2.2.3; decisions AMB-EXE-2, AMB-NAM-8.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
+from enum import IntEnum
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aircut.canon import Chunk
@@ -26,6 +30,46 @@ class Limits(NamedTuple):
     diagnostics: int = 1000
 
 
+class Mode(IntEnum):
+    """What is being compiled; the numbers are those of `#<compile.mode_...>`."""
+
+    MDI = 0
+    MACRO = 1
+    PROGRAM = 2
+    FROM_LINE = 3
+    RESUME = 4
+    RESUME_FROM_LINE = 5
+    ANALYSIS = 6
+
+
+WHOLE = (Mode.PROGRAM, Mode.ANALYSIS)  # what should end as a program does
+
+
+class Stop(NamedTuple):
+    """Where a run was stopped."""
+
+    program: str
+    line: int  # of the main program, from 1
+    moves: int  # made before it, since the program's start
+    place: tuple[float, ...]  # machine coordinates of the controlled point, mm and degrees
+
+
+class Start(NamedTuple):
+    """Where motion starts, in place of the first line."""
+
+    line: int  # of the main program, from 1
+    moves: int = 0  # to have been made before
+    stop: Stop | None = None  # the machine stands there; None: at its origin
+
+
+class Arrival(NamedTuple):
+    """How the program started midway, for a report."""
+
+    line: int
+    place: tuple[float, ...]  # where the program continues: its own frame, mm and degrees
+    approach: tuple[tuple[str, tuple[float, ...]], ...]  # code and machine coordinates
+
+
 class Settings(NamedTuple):
     """How to run."""
 
@@ -33,6 +77,9 @@ class Settings(NamedTuple):
     optional_stop: bool = False
     keep_going: bool = False  # after an error, go on with the next block
     restarts: int = 1  # runs that M47 asks for
+    mode: Mode = Mode.PROGRAM
+    start: Start | None = None  # None: at the first line
+    stop_line: int = 0  # of the main program, from 1: stop before it, as on STOP
     limits: Limits = Limits()
 
 
@@ -60,6 +107,8 @@ class Run:
         self.files = [source.name]
         self.line = 0
         self.ended: End | None = None
+        self.arrival: Arrival | None = None  # where the program was started, if not at its first line
+        self.stop: Stop | None = None  # where the run was stopped
 
     def tell(self, diagnostic: Diagnostic) -> None:
         """Add a diagnostic, once."""

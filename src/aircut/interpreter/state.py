@@ -118,6 +118,11 @@ class State:
         self.rollover = False  # a rotary mode is not 0
         self.indexers: tuple[int, ...] = ()  # axes that move alone
 
+        self.compile_mode = 2  # interpreter.midway.Mode
+        self.compile_line = 0  # that the program starts from
+        self.restarted: list[float | None] = [None] * 6  # #5081-#5086
+        self.stopped: list[float | None] = [None] * 6  # #5091-#5096
+
         self.locals: list[float | None] = [None] * 34
         self.numbered: list[float | None] = [None] * 7000
         self.names: dict[str, float | None] = {}

@@ -90,8 +90,8 @@ def one(number: int, title: str, read: Read, unit: str = "") -> SystemVariable:
 SYSTEM = (
     SystemVariable(5001, 5003, "Position in the work system, X Y Z", element("position"), "length"),
     SystemVariable(5004, 5006, "Position in the work system, A B C", rotary.position),
-    *axes(5081, "Position at the restart", lambda axis: null),
-    *axes(5091, "Position of the last stop, machine coordinates", lambda axis: null),
+    *axes(5081, "Position at the restart", lambda axis: element("restarted", axis)),
+    *axes(5091, "Position of the last stop, machine coordinates", lambda axis: element("stopped", axis)),
     one(5100, "Line being run", attribute("line")),
     one(5101, "Motion mode", code(Group.MOTION)),
     one(5102, "Plane", code(Group.PLANE)),
