@@ -21,7 +21,8 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.geometry.arcs import PLANE_AXES
 from aircut.interpreter.auxiliary import stop
-from aircut.interpreter.motion import FEED, ROTARY_AXES, SAME, TRAVERSE, feed_speed, target, write
+from aircut.interpreter.feeding import feed_speed
+from aircut.interpreter.motion import FEED, ROTARY_AXES, SAME, TRAVERSE, target, write
 from aircut.interpreter.requests import Request
 from aircut.interpreter.state import State, out_of_range, whole
 from aircut.interpreter.table import AXES, Code, Group, Order, Words

@@ -7,13 +7,14 @@ AMB-COD-12, AMB-FEED-1, AMB-FEED-3, AMB-XF-15 to AMB-XF-19.
 from __future__ import annotations
 
 from functools import partial
-from math import hypot, sqrt
+from math import hypot
 
 from aircut.canon import EXACT_STOP, INVERSE_TIME, ROW, Kind
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.geometry import arcs
 from aircut.interpreter import polar, rotary
+from aircut.interpreter.feeding import TINY, arc_speed, feed_speed, line_speed
 from aircut.interpreter.path import RECORDER
 from aircut.interpreter.state import INCH, PLANES, State, out_of_range, whole
 from aircut.interpreter.table import AXES, Code, Group, Order, Words
@@ -27,10 +28,8 @@ CENTER_WORDS = "ijk"
 MISMATCH = 0.0254  # mm by which an arc's two radii may differ, or
 MISMATCH_SHARE = 0.001  # this part of the larger
 RADIUS_SLACK = 1e-4  # part of the chord by which an R may be too short
-SLOWEST = 0.1  # program units a minute: a lower inverse-time feed is told as this
 FAR = 1e9  # mm, degrees, mm/min: nothing reasonable is beyond
 SAME = 1e-9  # mm, degrees: positions nearer than this are one
-TINY = 1e-7  # mm: shorter linear moves count as rotary ones (canonical listing, section 14)
 
 
 def target(m: State, w: Words) -> list[float] | None:
@@ -83,36 +82,6 @@ def at_axes(m: State, axes: dict[int, float]) -> list[float]:
     for i, value in axes.items():
         goal[i] = value - m.offset[i] - m.tool_offset[i]
     return goal
-
-
-def feed_speed(m: State, w: Words, length: float, rotary: bool = False) -> float:
-    """Speed of a feed move of this length (mm; degrees if rotary), per minute. Raises Refusal."""
-    if m.inverse_time:
-        if w.get("f", 0.0) <= 0.0:
-            raise Refusal(F.INVERSE_TIME_FEED, "f")
-        unit = 1.0 if rotary else m.unit
-        speed = max(SLOWEST * unit, m.feed * length)
-        m.out.event("SET_FEED_RATE", speed / unit * m.unit)
-        return speed
-    if m.feed <= 0.0:
-        speed = m.machine.options.default_feed
-        if m.machine.options.missing_feed == "error":
-            raise Refusal(F.MISSING_FEED)
-        if m.feed_told != speed:
-            m.feed_told = speed
-            m.warn(F.NO_FEED, feed=speed)
-            m.out.event("SET_FEED_RATE", speed)
-        return speed
-    return m.feed
-
-
-def length_of(start: list[float], end: list[float]) -> tuple[float, bool]:
-    """Length of a straight move, and whether only rotary axes move: then in degrees."""
-    dx, dy, dz = end[0] - start[0], end[1] - start[1], end[2] - start[2]
-    linear = sqrt(dx * dx + dy * dy + dz * dz)
-    if linear > TINY:
-        return linear, False
-    return sqrt(sum((end[i] - start[i]) ** 2 for i in (3, 4, 5))), True
 
 
 def write(m: State, kind: int, goal: list[float], speed: float, flags: int) -> None:
@@ -168,13 +137,10 @@ def feed(m: State, w: Words) -> None:
         flags |= EXACT_STOP
         m.exact_stop = False
     m.machine_frame = False
-    if m.inverse_time or m.feed <= 0.0 or m.unit != 1.0:
-        length, rotary = length_of(m.position, goal)
-        speed = feed_speed(m, w, length, rotary)
-        if m.inverse_time:
-            flags |= INVERSE_TIME
-        elif rotary and length:
-            speed /= m.unit  # degrees are never scaled (AMB-FEED-6)
+    if m.inverse_time:
+        flags |= INVERSE_TIME
+    if m.inverse_time or m.feed <= 0.0 or m.unit != 1.0 or m.surface_feed:
+        speed = line_speed(m, w, goal)
     else:
         speed = m.feed
     write(m, FEED, goal, speed, flags)
@@ -211,9 +177,10 @@ def arc(turn: int, m: State, w: Words) -> None:
         m.exact_stop = False
     if m.inverse_time:
         flags |= INVERSE_TIME
+    if m.inverse_time or m.surface_feed:
         radius = hypot(here[0] - center[0], here[1] - center[1])
         around = radius * arcs.sweep(here, there, center, turn * turns)
-        speed = feed_speed(m, w, hypot(around, end[axes[2]] - m.position[axes[2]]))
+        speed = arc_speed(m, w, end, hypot(around, end[axes[2]] - m.position[axes[2]]))
     else:
         speed = m.feed if m.feed > 0.0 else feed_speed(m, w, 0.0)
     write_arc(m, end, center, turn * turns, speed, flags)

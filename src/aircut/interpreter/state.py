@@ -77,6 +77,7 @@ class State:
         self.machine_frame = False  # G53, for one block
 
         self.feed = 0.0  # mm/min; under G93 the F word itself
+        self.surface_feed = machine.options.rotary_feed_handling
         self.feed_told = 0.0  # what the listing last heard
         self.speed = 0.0  # revolutions a minute
         self.spindle = 5

@@ -87,6 +87,7 @@ class Options(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     missing_feed: Literal["default", "error"] = "default"  # a feed move with no F (AMB-FEED-1)
     default_feed: Positive = 1000.0
     units: Literal[20, 21] = 21  # of the user interface
+    rotary_feed_handling: bool = False  # F is the speed over the turning part (AMB-FEED-5)
     tool_change: Literal["internal", "macro"] = "internal"  # M6
     pallet_shuttle: bool = False  # M60 and M30 run pallet_shuttle.ngc (AMB-IO-9)
     m66_read_back: bool = True  # M66 puts the input's value into #5720 (AMB-IO-2)
@@ -288,7 +289,17 @@ def parse(tables: dict[str, Any]) -> File:
         axes[letter] = axis_of(letter, settings, f"axes.{name}")
     if not set(axes) & set(AXES):
         axes |= {letter: Axis() for letter in LINEAR}
-    return converted({**tables, "axes": axes}, File)
+    file = converted({**tables, "axes": axes}, File)
+    if file.options.rotary_feed_handling:
+        check_origins(given, axes)
+    return file
+
+
+def check_origins(given: Mapping[str, Any], axes: Mapping[str, Axis]) -> None:
+    """Refuse Rotary Feed Handling where it is not said what a rotary axis turns about. Raises ValueError."""
+    for name, settings in given.items():
+        if axes[name.lower()].rotary and not any(field.startswith("origin_") for field in settings):
+            raise ValueError(f"options.rotary_feed_handling needs axes.{name}.origin_mode or origin_x to origin_z")
 
 
 def axis_of(letter: str, settings: Any, name: str = "") -> Axis:
