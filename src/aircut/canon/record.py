@@ -7,7 +7,7 @@ a run can be streamed; a Recording puts the chunks together again.
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 from aircut.canon.commands import COMMANDS
@@ -34,6 +34,7 @@ class Chunk(NamedTuple):
     first: int  # index of its first move
     rows: bytes  # packed moves (canon.ROW)
     events: Events
+    contour: bytes = b""  # packed moves as programmed, where compensation leads the tool beside them
 
 
 class Events:
@@ -62,18 +63,35 @@ class Events:
         for name in self.__slots__:
             getattr(self, name).extend(getattr(other, name))
 
+    def cut(self, index: int) -> Events:
+        """Take out the events from an index on."""
+        rest = Events()
+        for name in self.__slots__:
+            column = getattr(self, name)
+            getattr(rest, name).extend(column[index:])
+            del column[index:]
+        return rest
+
 
 class Recorder:
-    """Where the interpreter writes. `line` and `file` say where it stands."""
+    """Where the interpreter writes. `line` and `file` say where it stands.
 
-    __slots__ = ("events", "file", "first", "line", "rows")
+    Moves may be held back until those after them are known. The events told
+    meanwhile wait behind them: `hold` when a move is held back, `free` when it is
+    written, in the same order.
+    """
+
+    __slots__ = ("at_once", "contour", "events", "file", "first", "line", "marks", "rows")
 
     def __init__(self) -> None:
         self.first = 0
         self.rows = bytearray()
+        self.contour = bytearray()
         self.events = Events()
         self.line = 0
         self.file = 0
+        self.marks: list[int] = []  # of each move held back, the first event behind it
+        self.at_once: frozenset[str] = frozenset()  # events that do not wait
 
     @property
     def moves(self) -> int:
@@ -88,13 +106,45 @@ class Recorder:
         events.file.append(self.file)
         events.name.append(NUMBERS[name])
         events.values.append(values)
+        if self.marks and name in self.at_once:
+            self.hurry()
+
+    def hold(self) -> None:
+        """A move is held back: events from here on come after it."""
+        self.marks.append(len(self.events))
+
+    def free(self, write: Callable[[], None]) -> None:
+        """Write the first of the moves held back; the events behind it move on."""
+        before = self.moves
+        write()
+        written, at = self.moves - before, self.events.at
+        for index in range(self.marks.pop(0), len(at)):
+            at[index] += written
+
+    def drop(self) -> None:
+        """Forget the moves held back, and what waits behind them."""
+        if self.marks:
+            self.events.cut(self.marks[0])
+            self.marks.clear()
+
+    def hurry(self) -> None:
+        """The last event overtakes those that wait."""
+        events = self.events
+        for name in events.__slots__:
+            column = getattr(events, name)
+            column.insert(self.marks[0], column.pop())
+        self.marks = [mark + 1 for mark in self.marks]
 
     def take(self) -> Chunk:
-        """Hand out what has been written and start anew."""
-        chunk = Chunk(self.first, bytes(self.rows), self.events)
+        """Hand out what has been written and start anew; what waits stays."""
+        events = self.events
+        done = self.marks[0] if self.marks else len(events)
+        self.events = events.cut(done)
+        self.marks = [mark - done for mark in self.marks]
+        chunk = Chunk(self.first, bytes(self.rows), events, bytes(self.contour))
         self.first += len(self.rows) // ROW.size
         self.rows = bytearray()
-        self.events = Events()
+        self.contour = bytearray()
         return chunk
 
 
@@ -103,15 +153,19 @@ class Recording:
 
     def __init__(self) -> None:
         self.chunks: list[bytes] = []
+        self.contours: list[bytes] = []
         self.moves = 0
         self.events = Events()
         self.files: list[str] = []
         self._toolpath: Toolpath | None = None
+        self._contour: Toolpath | None = None
 
     def add(self, chunk: Chunk) -> None:
         if chunk.rows:
             self.chunks.append(chunk.rows)
             self.moves += len(chunk.rows) // ROW.size
+        if chunk.contour:
+            self.contours.append(chunk.contour)
         self.events.extend(chunk.events)
 
     @property
@@ -120,3 +174,10 @@ class Recording:
         if self._toolpath is None:
             self._toolpath = Toolpath.of_rows(self.chunks)
         return self._toolpath
+
+    @property
+    def contour(self) -> Toolpath:
+        """The programmed contours beside which compensation led the tool; each begins with a traverse to its start."""
+        if self._contour is None:
+            self._contour = Toolpath.of_rows(self.contours)
+        return self._contour

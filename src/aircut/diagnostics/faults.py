@@ -195,6 +195,27 @@ CYCLE_COMPENSATION = Fault("cycle-compensation", "{code} cannot run with cutter 
 CYCLE_SPINDLE = Fault("cycle-spindle", "{code} needs a turning spindle", "program S and M3 before")
 CYCLE_ROTARY = Fault("cycle-rotary", "{axis} moves in {code}", "turn rotary axes in a block before")
 CYCLE_BELOW = Fault("cycle-below", "{code}: R (at {r:g}) lies below the bottom of the hole ({axis}{bottom:g})")
+COMPENSATING = Fault("compensating", "{code} is not possible with cutter radius compensation on", "program G40 before")
+COMPENSATION_TILTED = Fault("compensation-tilted", "no cutter radius compensation {mode}", "program {off} before")
+COMPENSATION_YZ = Fault("compensation-yz", "{code} works in the XY and XZ planes only", "use G41 or G42")
+COMPENSATION_L = Fault("compensation-l", "L, the orientation of a lathe tool, works in the XZ plane only")
+SHORT_ENTRY = Fault(
+    "short-entry",
+    "the first move under compensation is {length:.4f} long, not longer than the radius of {radius:.4f}",
+    "lengthen the lead-in, or use the entry option easy",
+)
+GOUGING_CORNER = Fault(
+    "gouging-corner",
+    "a tool of radius {radius:.4f} does not fit between the moves of {first} and {second}",
+    "use a smaller tool, or the entry option normal, which leaves out what the tool cannot reach",
+    why="With the entry options nist and easy the tool must be able to touch every move of the contour (000, 4.3).",
+)
+GOUGING_ARC = Fault(
+    "gouging-arc",
+    "a tool of radius {radius:.4f} does not fit into the arc of radius {arc:.4f} of {second}, after {first}",
+    "use a smaller tool, or the entry option normal, which leaves out what the tool cannot reach",
+)
+EXIT_ARC = Fault("exit-arc", "the first move after compensation is an arc", "lead out with a straight move")
 PROBE_COMPENSATION = Fault("E0048", "cannot probe with cutter radius compensation", "program G40 before")
 PROBE_INVERSE_TIME = Fault("E0047", "cannot probe in inverse time feed mode", "program G94 and F before")
 PROBE_NO_FEED = Fault("E0049", "cannot probe with zero feed rate", "program F before")

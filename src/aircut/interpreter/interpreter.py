@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, NoReturn
 from aircut.canon import CHUNK, ROW, Chunk
 from aircut.diagnostics import Fault, Frame, Refusal, Span
 from aircut.diagnostics import faults as F
-from aircut.interpreter import macros, path, starting
+from aircut.interpreter import compensation, macros, path, starting
 from aircut.interpreter.arranging import Steps, arrange, code_name, find
 from aircut.interpreter.auxiliary import End, Restart
 from aircut.interpreter.calls import ARGUMENTS, Call, Return
@@ -104,7 +104,7 @@ class Interpreter(Run):
             try:
                 yield from self.blocks()
             except Stopped:
-                pass
+                m.out.drop()
             self.check_rest()
         if self.midway is not None:
             self.midway.drop(m)
@@ -420,6 +420,8 @@ class Interpreter(Run):
         """Run the codes of a block in turn, up to one that has something to ask. Raises Refusal."""
         m = self.state
         for row in codes:
+            if m.compensating:
+                compensation.before(m, row)
             if row.modal:
                 self.set_mode(row)
             if (talk := row.run(m, w)) is not None:

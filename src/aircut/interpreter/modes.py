@@ -8,6 +8,7 @@ from __future__ import annotations
 from functools import partial
 
 from aircut.canon import EXACT_PATH, EXACT_STOP
+from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.state import INCH, PLANES, State, out_of_range, whole
 from aircut.interpreter.table import Code, Group, Order, Words
@@ -58,6 +59,8 @@ def speed_word(m: State, w: Words) -> None:
 
 def plane(number: int, m: State, w: Words) -> None:
     """G17, G18, G19."""
+    if m.compensating and number != m.plane:
+        raise Refusal(F.COMPENSATING, code=f"a change to the {PLANES[number]} plane")
     m.plane = number
     m.out.event("SELECT_PLANE", PLANES[number])
 
@@ -171,7 +174,6 @@ CODES = (
     mode("G19", "YZ plane", partial(plane, 2), Group.PLANE),
     mode("G20", "Inches", partial(units, INCH), Group.UNITS),
     mode("G21", "Millimeters", partial(units, 1.0), Group.UNITS),
-    mode("G40", "Cutter compensation off", partial(off, "cutter radius compensation off"), Group.CUTTER),
     mode("G50", "Scaling off", partial(off, ""), Group.SCALING),
     mode("G61", "Exact path", exact_path, Group.PATH),
     mode("G61.1", "Exact stop", exact_stop, Group.PATH),

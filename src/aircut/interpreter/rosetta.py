@@ -7,13 +7,25 @@ from __future__ import annotations
 
 from functools import partial
 
-from aircut.interpreter import auxiliary, calls, cycles, inputs, messages, modes, motion, offsets, probing, tooling
+from aircut.interpreter import (
+    auxiliary,
+    calls,
+    cutter,
+    cycles,
+    inputs,
+    messages,
+    modes,
+    motion,
+    offsets,
+    probing,
+    tooling,
+)
 from aircut.interpreter.arranging import code_name
 from aircut.interpreter.interpreter import Interpreter
 from aircut.interpreter.named import NAMED
 from aircut.interpreter.state import State
 from aircut.interpreter.system import SYSTEM
-from aircut.interpreter.table import Code, Dialect, Group, Order, Range, Words
+from aircut.interpreter.table import Code, CutterRules, Dialect, Group, Order, Range, Words
 
 
 def unreachable(m: State, w: Words) -> None:
@@ -21,15 +33,10 @@ def unreachable(m: State, w: Words) -> None:
 
 
 later = partial(Code, run=unreachable, supported=False)
-compensation = partial(later, group=Group.CUTTER, order=Order.CUTTER, takes="dil")
 length = partial(later, group=Group.TOOL_LENGTH, order=Order.TOOL_LENGTH, takes="h")
 
 #: Codes of the language that cannot be run yet: programs that use them are refused.
 LATER = (
-    compensation("G41", "Cutter compensation left"),
-    compensation("G41.1", "Dynamic cutter compensation left"),
-    compensation("G42", "Cutter compensation right"),
-    compensation("G42.1", "Dynamic cutter compensation right"),
     length("G43.4", "Tool center point control"),
     length("G43.7", "Tool center point control with own offsets", axes=True),
     later("G51", "Scaling", group=Group.SCALING, order=Order.SCALING, axes=True, takes="ijkp"),
@@ -41,6 +48,7 @@ CODES = (
     *motion.CODES,
     *cycles.CODES,
     *modes.CODES,
+    *cutter.CODES,
     *offsets.CODES,
     *tooling.CODES,
     *auxiliary.CODES,
@@ -94,6 +102,12 @@ RANGES = (
     Range(6000, 6999, "Protected variables: programs only read them", "table", writable=False),
 )
 
+#: AMB-CMP-6. The plane codes, cycles and probing look for themselves.
+CUTTER = CutterRules(
+    forbids=frozenset(["G28", "G30", "G41", "G41.1", "G42", "G42.1", "G43.4", "G43.7", "G53", "G68.2", "M6"]),
+    flushes=frozenset(["M66", "M67"]),
+)
+
 SETTINGS = {**offsets.SETTINGS, **tooling.SETTINGS, **messages.SETTINGS}
 
 
@@ -131,4 +145,5 @@ ROSETTA = Dialect(
     local_underscore=True,
     settings=SETTINGS,
     no_variable="variables are #0 to #33, #100 to #4999, #5000 to #5999 (system) and #6000 to #6999",
+    cutter=CUTTER,
 )

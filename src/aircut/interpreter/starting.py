@@ -6,7 +6,7 @@ closing commands is that of the canonical listing.
 
 from __future__ import annotations
 
-from aircut.interpreter import rotary
+from aircut.interpreter import path, rotary
 from aircut.interpreter.auxiliary import End
 from aircut.interpreter.offsets import tell_rotation, tell_shift, tell_system
 from aircut.interpreter.state import PLANES, WORK_SYSTEMS, State
@@ -75,9 +75,12 @@ def remembered(m: State) -> dict[int, float]:
 def finish(m: State, end: End) -> None:
     """The end of the program; with a reset (M2, M30) everything is off and back to its start."""
     out = m.out
+    path.flush(m)
     if not end.reset:
         out.event("PROGRAM_END")
         return
+    path.set_stage(m, "compensation", None)
+    m.compensating = False
     m.system = 0
     local = any(m.local)
     m.local = [0.0] * 6

@@ -51,6 +51,7 @@ class State:
         self.frame: Frame | None = None
         self.stages: dict[str, Stage] = {}  # by slot of the path
         self.way: Onward = RECORDER  # where moves go
+        self.compensating = False  # G41, G42: the cutter's radius
         self.origins = [[0.0] * 6 for _ in range(WORK_SYSTEMS)]
         self.system = 0
         self.local = [0.0] * 6  # G52

@@ -147,6 +147,17 @@ class NamedParameter(NamedTuple):
     read: Callable[[State], float | None]
 
 
+class CutterRules(NamedTuple):
+    """What languages see differently in cutter radius compensation."""
+
+    forbids: frozenset[str] = frozenset()  # codes that cannot run while it is on
+    flushes: frozenset[str] = frozenset()  # codes before which no move is held back any longer
+    at_once: frozenset[str] = frozenset()  # events that do not wait behind a move held back
+    straight: float = 0.001  # radians: a smaller change of direction is no corner
+    plunge_first: bool = True  # moves across the plane may come before the entry
+    zero_is_loaded: bool = False  # D0 means the loaded tool, not the radius 0
+
+
 class Dialect(NamedTuple):
     """A language: its tables and the switches of its grammar."""
 
@@ -163,4 +174,5 @@ class Dialect(NamedTuple):
     local_underscore: bool  # a leading _ makes a named variable local (else: global)
     settings: Mapping[int, Code]  # G10's L numbers
     no_variable: str  # hint for numbers outside all ranges
+    cutter: CutterRules = CutterRules()
     axes: str = "XYZ"  # of the machine that serves when none is given

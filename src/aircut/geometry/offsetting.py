@@ -1,0 +1,165 @@
+"""Offsetting contours of lines and arcs: what radius compensation needs of plane geometry.
+
+Everything speaks the plane's own axes u and v, mm, counterclockwise from u to v.
+Offsets are to the left where positive, seen along the way. `turns` is that of
+`arcs`: positive counterclockwise, 0 for straight lines.
+"""
+
+from __future__ import annotations
+
+from math import atan2, hypot, pi, sqrt
+from typing import NamedTuple
+
+Point = tuple[float, float]
+Vector = tuple[float, float]
+
+PARALLEL = 1e-12  # sine of the angle below which lines do not meet
+TOUCH = 1e-9  # part of the radius by which curves may miss each other and still touch
+STRAIGHT_BACK = 1e-9  # radians from a half turn
+
+
+class Element(NamedTuple):
+    """A straight line or an arc."""
+
+    start: Point
+    end: Point
+    center: Point | None = None
+    turns: int = 0
+
+    @property
+    def sign(self) -> int:
+        """+1 for arcs counterclockwise, -1 clockwise, 0 for lines."""
+        return (self.turns > 0) - (self.turns < 0)
+
+    @property
+    def radius(self) -> float:
+        """Of an arc, at its start (a line's is 0)."""
+        return 0.0 if self.center is None else distance(self.start, self.center)
+
+
+def distance(a: Point, b: Point) -> float:
+    return hypot(b[0] - a[0], b[1] - a[1])
+
+
+def heading(element: Element, point: Point) -> Vector:
+    """Direction of travel at a point of the element, of length 1."""
+    if element.center is None:
+        du, dv = element.end[0] - element.start[0], element.end[1] - element.start[1]
+    else:
+        sign = element.sign
+        du, dv = sign * (element.center[1] - point[1]), sign * (point[0] - element.center[0])
+    length = hypot(du, dv)
+    return du / length, dv / length
+
+
+def beside(point: Point, direction: Vector, away: float) -> Point:
+    """The point at a distance to the left of another."""
+    return point[0] - away * direction[1], point[1] + away * direction[0]
+
+
+def turn(before: Vector, after: Vector) -> float:
+    """Change of direction, radians, from -pi to pi; positive to the left."""
+    cross = before[0] * after[1] - before[1] * after[0]
+    return atan2(cross, before[0] * after[0] + before[1] * after[1])
+
+
+def corner(first: Element, second: Element, side: int) -> float:
+    """Change of direction between two elements, radians, as seen from the tool: positive for inside corners.
+
+    side: +1 with the tool on the left, -1 on the right. Where the way goes straight
+    back the corner is an outside one, unless the second element bends to the tool's
+    side of the first.
+    """
+    angle = side * turn(heading(first, first.end), heading(second, second.start))
+    if abs(angle) > pi - STRAIGHT_BACK:
+        bent = first.sign / (first.radius or 1.0) + second.sign / (second.radius or 1.0)
+        return pi if side * bent < 0.0 else -pi
+    return angle
+
+
+def offset(element: Element, away: float) -> Element | None:
+    """The parallel element to the left; None for an arc whose radius is not larger than it."""
+    if element.center is None:
+        direction = heading(element, element.end)
+        return Element(beside(element.start, direction, away), beside(element.end, direction, away))
+    if element.radius - element.sign * away <= 0.0:
+        return None
+    start = beside(element.start, heading(element, element.start), away)
+    end = beside(element.end, heading(element, element.end), away)
+    return element._replace(start=start, end=end)
+
+
+def crossings(first: Element, second: Element) -> list[Point]:
+    """Where the whole lines and circles of two elements meet: none, one or two points.
+
+    Arcs have the radius of their end; only one after a line that of its start (as the oracle has it: the
+    two differ by what the program rounds).
+    """
+    if first.center is None and second.center is None:
+        return line_line(first, second)
+    if first.center is None:
+        assert second.center is not None
+        return line_circle(first, second.center, distance(second.start, second.center))
+    if second.center is None:
+        return line_circle(second, first.center, distance(first.end, first.center))
+    radii = distance(first.end, first.center), distance(second.end, second.center)
+    return circle_circle(first.center, radii[0], second.center, radii[1])
+
+
+def line_line(first: Element, second: Element) -> list[Point]:
+    a, b = heading(first, first.end), heading(second, second.end)
+    sine = a[0] * b[1] - a[1] * b[0]
+    if abs(sine) < PARALLEL:
+        return []
+    du, dv = second.start[0] - first.end[0], second.start[1] - first.end[1]
+    along = (du * b[1] - dv * b[0]) / sine
+    return [(first.end[0] + along * a[0], first.end[1] + along * a[1])]
+
+
+def line_circle(line: Element, center: Point, radius: float) -> list[Point]:
+    d = heading(line, line.end)
+    du, dv = center[0] - line.start[0], center[1] - line.start[1]
+    along, across = du * d[0] + dv * d[1], dv * d[0] - du * d[1]
+    return pair(line.start, d, along, radius**2 - across**2, radius)
+
+
+def circle_circle(a: Point, radius: float, b: Point, other: float) -> list[Point]:
+    du, dv = b[0] - a[0], b[1] - a[1]
+    apart = hypot(du, dv)
+    if apart < TOUCH * radius:
+        return []
+    along = (apart**2 + radius**2 - other**2) / (2.0 * apart)
+    foot = (a[0] + along * du / apart, a[1] + along * dv / apart)
+    return pair(foot, (-dv / apart, du / apart), 0.0, radius**2 - along**2, radius)
+
+
+def pair(origin: Point, direction: Vector, along: float, square: float, radius: float) -> list[Point]:
+    """The points at along ± √square from an origin; one where the square is a rounding error below zero."""
+    if square < -TOUCH * radius**2:
+        return []
+    half = sqrt(max(square, 0.0))
+    return [(origin[0] + t * direction[0], origin[1] + t * direction[1]) for t in (along - half, along + half)]
+
+
+def nearest(points: list[Point], place: Point) -> Point | None:
+    """The point nearest to a place."""
+    return min(points, key=lambda point: distance(point, place), default=None)
+
+
+def center_between(start: Point, end: Point, center: Point) -> Point | None:
+    """The center of an arc whose end has been moved away from, or towards, its center.
+
+    It lies on the line through the end and the old center, equally far from start
+    and end; None where there is no such point.
+    """
+    au, av = center[0] - end[0], center[1] - end[1]
+    length = hypot(au, av)
+    if length == 0.0:
+        return None
+    au, av = au / length, av / length
+    bu, bv = start[0] - end[0], start[1] - end[1]
+    across = bu * au + bv * av
+    if abs(across) < PARALLEL:
+        return None
+    along = (bu * bu + bv * bv) / (2.0 * across)
+    return end[0] + along * au, end[1] + along * av
