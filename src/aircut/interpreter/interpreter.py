@@ -243,13 +243,14 @@ class Interpreter(Run):
             here = True
             while here:
                 if line >= end:
-                    if line >= self.routine.end:
-                        line = self.run_off()
-                        break
                     try:
+                        if line >= self.routine.end:
+                            line = self.run_off()
+                            break
                         self.pass_mark(line)
                     except Refusal as refusal:
-                        self.tell_refusal(refusal, unit, line)
+                        self.tell_refusal(refusal, unit, self.line)
+                        out.line = 0
                         raise Stopped from None
                     end = self.bound()
                 kind = classes[line]
