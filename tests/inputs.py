@@ -56,19 +56,46 @@ class Choices:
 
 # --- programs
 
-NUMBERS = ("0", "1", "2", "3", "-1", "10", ".5", "-2.5", "100", "1000.125", "0.0001", "1.00004", "-0", "99999999999",
-           "9" * 40, "9" * 400, "33", "34", "500", "4000", "5220", "5730", "6000", "7000", "5", "4", "7", "12")  # fmt: skip
-PRELUDE = "G17 G21 G90 G54 M3 S1000 F500 G0\n#1=1 #2=2.5 #3=0 #4=-4 #5=5 #6=30 #7=7 #8=0\n#<a>=1 #<_b>=2 #<xy>=3 #<list[1]>=4"
+NUMBERS = ("0", "1", "2", "3", "-1", "10", ".5", "-2.5", "100", "1000.125", "0.0001", "1.00004", "-0",
+           "99999999999", "9" * 40, "9" * 400, "33", "34", "500", "4000", "5220", "5730", "6000", "7000",
+           "5", "4", "7", "12")  # fmt: skip
+PRELUDE = (
+    "G17 G21 G90 G54 M3 S1000 F500 G0\n#1=1 #2=2.5 #3=0 #4=-4 #5=5 #6=30 #7=7 #8=0\n#<a>=1 #<_b>=2 #<xy>=3 #<list[1]>=4"
+)
 NAMES = ("a", "_b", "x y", "list[1]", "list[#1]", "_args.a", "cnc.axis_mask", "tool.diameter", "_")
 CONDITIONS = ("EQ", "NE", "GT", "GE", "LT", "LE")
-STRUCTURE = ("IF [{c}] THEN {i}", "ELIF [{c}] THEN {i}", "ELSE {i}", "END {i}", "WHILE [{c}] DO{i}", "END{i}", "BREAK {i}",
-             "IF [{c}] BREAK {i}", "IF [{c}] GOTO {n}", "GOTO {n}", "N{n}", "N{n} X{v}", "O{n}", 'SUB "{n}"', "M99", "ENDSUB",
-             "RETURN", "%", "M2", "M30", "M47")  # fmt: skip
-CALLS = ("M98 P{n}", "M98 P{n} L{v}", "G65 P{n} A{v} X{v}", "CALL {n} B{v}", 'G65 P"{n}" Z{v}', "G66 P{n} A{v}", "G67",
-         'M98 P"helper"', "M6 T{n}", "G250 X{v}", "G390 X{v} Y{v}", "M60", "M200 A{v}")  # fmt: skip
+STRUCTURE = ("IF [{c}] THEN {i}", "ELIF [{c}] THEN {i}", "ELSE {i}", "END {i}", "WHILE [{c}] DO{i}",
+             "END{i}", "BREAK {i}", "IF [{c}] BREAK {i}", "IF [{c}] GOTO {n}", "GOTO {n}", "N{n}",
+             "N{n} X{v}", "O{n}", 'SUB "{n}"', "M99", "ENDSUB", "RETURN", "%", "M2", "M30", "M47")  # fmt: skip
+CALLS = ("M98 P{n}", "M98 P{n} L{v}", "G65 P{n} A{v} X{v}", "CALL {n} B{v}", 'G65 P"{n}" Z{v}',
+         "G66 P{n} A{v}", "G67", 'M98 P"helper"', "M6 T{n}", "G250 X{v}", "G390 X{v} Y{v}", "M60",
+         "M200 A{v}")  # fmt: skip
 OTHERS = ('M109 P"text #{n} #<a> <b>{v}</b>" Q{n}', 'M120 P"{v}" Q{n}', "(comment {v})", "; {v}", "/G0 X{v}",
           "(aircut: ignore no-feed)", "(MSG, {v})", "G100 P{n} A{v}", "G#1", "M#{n}", "G[{v}] X1")  # fmt: skip
-POISON = ("", "#", "[", "]", '"', "(", ")", "=", "\0", "\xff", "G", "X", "\t", ";", "/", "?", "\r", "**", "[[", "#<", ">", ",")
+POISON = (
+    "",
+    "#",
+    "[",
+    "]",
+    '"',
+    "(",
+    ")",
+    "=",
+    "\0",
+    "\xff",
+    "G",
+    "X",
+    "\t",
+    ";",
+    "/",
+    "?",
+    "\r",
+    "**",
+    "[[",
+    "#<",
+    ">",
+    ",",
+)
 
 
 @cache
@@ -296,19 +323,34 @@ def worlds() -> list[Any]:
 
 # --- files
 
-KEYS = ("id", "x", "z", "diameter", "type", "slot", "description", "axes", "X", "A", "min", "max", "velocity", "options",
-        "units", "kinematics", "rotary_table", "d_x", "bodies", "shape", "at", "size", "radius", "height", "file", "inputs",
-        "number", "value", "times", "sequence", "operator", "values", "stop", "overshoot", "tools", "length", "spindle",
-        "axis", "analog", "rules", "name", "system", "version")  # fmt: skip
-VALUES = ("1", "-1", "0", "0.5", "1e400", "nan", "inf", "'box'", "'sphere'", "'cylinder'", "'stl'", "'rotary_table_ac'",
-          "[1.0, 2.0, 3.0]", "[[0.0, 1.0]]", "[]", "{}", "true", "'../x'", "''", "99999999999999999999", "20", "'off'")  # fmt: skip
-TOML = ("[[tools]]", "[axes.X]", "[axes.A]", "[options]", "[[bodies]]", "[[inputs]]", "[[operator]]", "[spindle]", "[system]",
-        "[rules]", "[")  # fmt: skip
-TABLE = ("T1 P1 Z5.0 D3 ;end mill", "T2", "P3 T4", "T1 P1 Z-", "T99999999999 P1", ";", "T3 P3 X1e400", "T5 P5 Dnan", "T1T1",
-         "T2.5 P2", "\0", "Tool 1", "T7 P7 Q5 I1 J2")  # fmt: skip
-PARAMETERS = ("5161 1.0", "4000 nan", "100 5", "5220 3", "5221 1e400", "x y", "5161", "-1 3", "99999 1", "4001\t-2.5", "5220 99")
-JSON = ('{"data":[', "]}", '{"post-process":{"number":1}', '"geometry":{"DC":', '"NaN"', "1e999", "-5", "null", "[", "]", "{",
-        "}", ",", ":", '"unit":"inches"', '"type":"probe"', '"type":"drill"', '"guid":', "true", '""')  # fmt: skip
+KEYS = ("id", "x", "z", "diameter", "type", "slot", "description", "axes", "X", "A", "min", "max",
+        "velocity", "options", "units", "kinematics", "rotary_table", "d_x", "bodies", "shape", "at",
+        "size", "radius", "height", "file", "inputs", "number", "value", "times", "sequence", "operator",
+        "values", "stop", "overshoot", "tools", "length", "spindle", "axis", "analog", "rules", "name",
+        "system", "version")  # fmt: skip
+VALUES = ("1", "-1", "0", "0.5", "1e400", "nan", "inf", "'box'", "'sphere'", "'cylinder'", "'stl'",
+          "'rotary_table_ac'", "[1.0, 2.0, 3.0]", "[[0.0, 1.0]]", "[]", "{}", "true", "'../x'", "''",
+          "99999999999999999999", "20", "'off'")  # fmt: skip
+TOML = ("[[tools]]", "[axes.X]", "[axes.A]", "[options]", "[[bodies]]", "[[inputs]]", "[[operator]]",
+        "[spindle]", "[system]", "[rules]", "[")  # fmt: skip
+TABLE = ("T1 P1 Z5.0 D3 ;end mill", "T2", "P3 T4", "T1 P1 Z-", "T99999999999 P1", ";", "T3 P3 X1e400",
+         "T5 P5 Dnan", "T1T1", "T2.5 P2", "\0", "Tool 1", "T7 P7 Q5 I1 J2")  # fmt: skip
+PARAMETERS = (
+    "5161 1.0",
+    "4000 nan",
+    "100 5",
+    "5220 3",
+    "5221 1e400",
+    "x y",
+    "5161",
+    "-1 3",
+    "99999 1",
+    "4001\t-2.5",
+    "5220 99",
+)
+JSON = ('{"data":[', "]}", '{"post-process":{"number":1}', '"geometry":{"DC":', '"NaN"', "1e999", "-5",
+        "null", "[", "]", "{", "}", ",", ":", '"unit":"inches"', '"type":"probe"', '"type":"drill"',
+        '"guid":', "true", '""')  # fmt: skip
 
 
 def toml(choices: Choices) -> str:
@@ -334,6 +376,10 @@ def picked(items: Sequence[str], between: str) -> Callable[[Choices], str]:
     return make
 
 
+def parameters(path: Path) -> None:
+    memory.read_parameters(path, memory.PERSISTENT)
+
+
 #: Files: suffix or name, what makes the text, what reads it, and what the reader may raise.
 FILES: tuple[tuple[str, Callable[[Choices], str], Callable[[Path], Any], type[Exception]], ...] = (
     ("tools.toml", toml, read_tools, MachineError),
@@ -341,7 +387,12 @@ FILES: tuple[tuple[str, Callable[[Choices], str], Callable[[Path], Any], type[Ex
     ("library.json", picked(JSON, ""), read_tools, MachineError),
     ("machine.toml", toml, lambda path: load(path.parent), MachineError),
     ("world.toml", toml, load_world, WorldError),
-    ("linuxcnc.var", picked(PARAMETERS, "\n"), lambda path: memory.read_parameters(path, memory.PERSISTENT), MachineError),
+    (
+        "linuxcnc.var",
+        picked(PARAMETERS, "\n"),
+        lambda path: memory.read_parameters(path, memory.PERSISTENT),
+        MachineError,
+    ),
 )
 
 

@@ -88,7 +88,7 @@ def test_stream_gives_the_same_as_run() -> None:
 
 def test_load(tmp_path: Path) -> None:
     path = tmp_path / "p.ngc"
-    path.write_bytes(b"\xef\xbb\xbfG0 X1\r\nM2\r\n\x1a")
+    path.write_bytes(b"\xef\xbb\xbfG21 G0 X1\r\nM2\r\n\x1a")
     program = aircut.load(path)
     assert program.check() == []
     assert len(program.run().toolpath) == 1

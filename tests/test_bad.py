@@ -73,7 +73,7 @@ def test_budget_counts_calls() -> None:
 
 
 def test_straight_programs_never_meet_the_budget() -> None:
-    assert codes("G0 X1\n" * 5000 + "M2\n", blocks=0) == set()
+    assert codes("G21 G0 X1\n" * 5000 + "M2\n", blocks=0) == set()
 
 
 def test_moves_are_limited_where_they_are_kept() -> None:

@@ -67,7 +67,7 @@ def test_json_report(good: Path, tmp_path: Path) -> None:
 
 
 def test_check_tells_all_faults_at_once(bad: Path) -> None:
-    lines = invoke("check", bad, status=1).splitlines()
+    lines = invoke("check", "--ignore", "no-units", bad, status=1).splitlines()
     assert [line.removeprefix(str(bad)) for line in lines] == [
         ":2:7: error unused-word: nothing in this block uses K",
         ":3:5: error division-by-zero: division by zero",
@@ -86,7 +86,7 @@ def test_check_on_a_terminal_marks_the_place(bad: Path) -> None:
 
     out = Terminal()
     program = load(bad)
-    common.show(program.check()[:1], lambda _file, line: program.source.text(line - 1), out)
+    common.show(program.check(ignore=["no-units"])[:1], lambda _file, line: program.source.text(line - 1), out)
     text, line, mark = click.unstyle(out.getvalue()).splitlines()[:3]
     assert "unused-word" in text
     assert line == "    2 | G1 X2 K3 F100"
@@ -94,17 +94,17 @@ def test_check_on_a_terminal_marks_the_place(bad: Path) -> None:
 
 
 def test_check_many_files(good: Path, bad: Path) -> None:
-    assert invoke("check", good) == ""
+    assert invoke("check", "--ignore", "spindle-off", good) == ""
     assert "bad.ngc:2:7" in invoke("check", good, bad, status=1)
 
 
 def test_check_formats(bad: Path) -> None:
-    data = json.loads(invoke("check", bad, "--format", "json", status=1))
+    data = json.loads(invoke("check", bad, "--ignore", "no-units", "--format", "json", status=1))
     assert [d["code"] for d in data["diagnostics"]] == ["unused-word", "division-by-zero"]
-    sarif = json.loads(invoke("check", bad, "--format", "sarif", status=1))
+    sarif = json.loads(invoke("check", bad, "--ignore", "no-units", "--format", "sarif", status=1))
     region = sarif["runs"][0]["results"][0]["locations"][0]["physicalLocation"]["region"]
     assert region == {"startLine": 2, "startColumn": 7, "endColumn": 9}
-    assert invoke("check", bad, "--format", "github", status=1).startswith("::error file=")
+    assert invoke("check", bad, "--ignore", "no-units", "--format", "github", status=1).startswith("::error file=")
 
 
 def test_run_stops_at_the_first_error(bad: Path) -> None:

@@ -96,7 +96,7 @@ def test_g390_alarms_where_there_is_nothing() -> None:
 
 
 def test_g390_names_macro_and_line_as_the_vendor_does() -> None:
-    diagnostic = aircut.loads("G0 X1\nG390\nM2\n").check()[0]
+    diagnostic = aircut.loads("G21 G0 X1\nG390\nM2\n").check()[0]
     assert diagnostic.code == "E0345" and diagnostic.stack[0].line == 2
     line = diagnostic.span.line
     assert diagnostic.vendor() == f"[E0345] in line 2 (G390, line {line}) - required a tool of PROBE type"

@@ -18,6 +18,7 @@ FLOORS = {
     "machine": 3,
     "interpreter": 4,
     "dialects": 4,
+    "rules": 5,
     "planner": 5,
     "controller": 6,
     "export": 7,

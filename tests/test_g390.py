@@ -117,7 +117,7 @@ def test_tool_and_compensation(text: str, tool: dict[str, float], message: str) 
 
 
 def test_errors_come_when_compiled() -> None:
-    program = aircut.loads("G0 X1\nG390\nM2\n")
+    program = aircut.loads("G21 G0 X1\nG390\nM2\n")
     told = program.check()[0]
     assert told.vendor().startswith("[E0345] in line 2 (G390, line ")
     assert told.vendor().endswith(") - required a tool of PROBE type")

@@ -9,7 +9,7 @@ print(result.extents, len(result.toolpath))
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -206,10 +206,19 @@ class Program:
         made = machine or built_in(self.dialect.axes)
         return self.dialect.interpreter(self.source, self.dialect, made, Settings(**settings))
 
-    def check(self, machine: Machine | str | Path | None = None, **settings: Any) -> list[Diagnostic]:
-        """All diagnostics, going on after errors; no motion is kept."""
+    def check(
+        self, machine: Machine | str | Path | None = None, ignore: Iterable[str] = (), **settings: Any
+    ) -> list[Diagnostic]:
+        """All diagnostics, going on after errors; no motion is kept.
+
+        ignore: codes of rules to leave out, beside those that comments and the project's
+        aircut.toml switch off. Raises RulesError.
+        """
+        from aircut import rules
+
+        policy = rules.Policy.of(Path(self.source.name), ignore)
         interpreter = self.interpreter(machine, keep_going=True, **settings)
-        for _ in interpreter.run():
+        for _ in rules.checked(interpreter, policy):
             pass
         return interpreter.diagnostics
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from aircut import rules
 from aircut.cli import common
 from aircut.diagnostics import Diagnostic, Severity
 from aircut.interpreter.running import Run
@@ -24,7 +25,7 @@ def check(files: Sequence[Path], style: str, output: Path | None, options: dict[
             diagnostics.append(made)
             continue
         with common.progress(f"checking {file.name}") as advance:
-            for _ in made.run():
+            for _ in rules.checked(made, common.policy(file, options)):
                 advance(made.line, len(made.unit.source))
         diagnostics += made.diagnostics
         interpreters.append(made)

@@ -16,6 +16,7 @@ from aircut.diagnostics import Diagnostic, Severity, Span
 from aircut.diagnostics import faults as F
 from aircut.interpreter.running import Limits, Run, Settings
 from aircut.machine import Machine, MachineError, built_in, load, memory
+from aircut.rules.policy import Policy, RulesError
 from aircut.source import Source
 
 PATIENCE = 1.0  # seconds of work before progress is shown
@@ -70,6 +71,14 @@ def interpreter(
     except OSError as error:
         return F.CANNOT_READ.at(str(file), Span(), reason=error.strerror or str(error))
     return dialect.interpreter(source, dialect, made, settings(options, keep_going, keeps_moves))
+
+
+def policy(file: Path, options: dict[str, Any]) -> Policy:
+    """What the project's file and the options say of rules. Raises click.UsageError."""
+    try:
+        return Policy.of(file, options.get("ignore", ()))
+    except RulesError as error:
+        raise click.UsageError(str(error)) from None
 
 
 def remember(options: dict[str, Any], made: Machine, finished: Run) -> None:

@@ -82,6 +82,7 @@ def run(file: Path, style: str, output: Path | None, **options: Any) -> None:
 @cli.command()
 @click.argument("files", type=FILE, nargs=-1, required=True)
 @machine_options
+@click.option("--ignore", multiple=True, metavar="RULE", help="Leave out the warnings of a rule; repeatable.")
 @click.option("--format", "style", type=click.Choice(CHECK_FORMATS), default="text", show_default=True)
 @click.option("-o", "--output", type=FILE, help="Write here instead of to the terminal.")
 def check(files: tuple[Path, ...], style: str, output: Path | None, **options: Any) -> None:

@@ -9,6 +9,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
+from aircut import rules
 from aircut.canon import Recording
 from aircut.cli import common
 from aircut.diagnostics import Diagnostic
@@ -25,15 +26,16 @@ def run(file: Path, style: str, output: Path | None, options: dict[str, Any]) ->
     if isinstance(made, Diagnostic):
         common.show([made], lambda *_: "", sys.stderr)
         return 1
+    policy = common.policy(file, options)
     simulation = simulated(made, options)
     if output is None:
-        report(made, simulation, style, sys.stdout, options)
+        report(made, simulation, style, sys.stdout, options, policy)
     else:
         from aircut.files import replacing
 
         try:
             with replacing(output) as out:
-                report(made, simulation, style, out, options)
+                report(made, simulation, style, out, options, policy)
         except OSError as error:
             raise click.ClickException(f"cannot write {output}: {error.strerror}") from None
     if style != "json" or output is not None:
@@ -57,11 +59,14 @@ def simulated(made: Run, options: dict[str, Any]) -> Simulation | None:
         raise click.UsageError(str(error)) from None
 
 
-def report(made: Run, simulation: Simulation | None, style: str, out: IO[str], options: dict[str, Any]) -> None:
+def report(
+    made: Run, simulation: Simulation | None, style: str, out: IO[str], options: dict[str, Any], policy: rules.Policy
+) -> None:
     if style == "canon":
         out.writelines(listing(made, simulation))
+        rules.settled(made, policy)
         return
-    result = collect(made, simulation)
+    result = collect(made, simulation, policy)
     if style == "json":
         from aircut.export.report import to_json
 
@@ -83,7 +88,7 @@ def listing(made: Run, simulation: Simulation | None) -> Iterable[str]:
             advance(made.line, len(made.unit.source))
 
 
-def collect(made: Run, simulation: Simulation | None = None) -> Any:
+def collect(made: Run, simulation: Simulation | None = None, policy: rules.Policy | None = None) -> Any:
     """The Result of a run."""
     from aircut.api import Result
 
@@ -93,4 +98,6 @@ def collect(made: Run, simulation: Simulation | None = None) -> Any:
             recording.add(chunk)
             advance(made.line, len(made.unit.source))
     recording.files = made.files
+    if policy is not None:
+        rules.settled(made, policy)
     return Result(recording, made)

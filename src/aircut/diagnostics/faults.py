@@ -234,4 +234,37 @@ TOOL_NOT_DECLARED = Fault(
 )
 UNKNOWN_PARAMETER = Fault("unknown-parameter", "G10 L{l:g} is not a code of this language")
 
+
+# --- Rules of `aircut check` (rows with examples: rules/table.py)
+
+UNSET_VARIABLE = Fault(
+    "unset-variable",
+    "{what} is read before it is set: {how}",
+    "assign it before, or test it with IF [{what} EQ #0]",
+    WARNING,
+)
+UNREACHABLE = Fault(
+    "unreachable-code",
+    "{lines} can never run: line {line} always leads elsewhere",
+    "delete it, or put a label before it that a GOTO names",
+    WARNING,
+)
+UNUSED_SUBROUTINE = Fault("unused-subroutine", "nothing calls subroutine {name}", severity=WARNING)
+SPINDLE_OFF = Fault("spindle-off", "a feed move, and the spindle is not turning: {why}", "program S and M3", WARNING)
+RAPID_BELOW_CUT = Fault(
+    "rapid-below-cut",
+    "a rapid goes down to Z{height:.4g} mm: {depth}",
+    "go there by G1, or rapid to a height that is clear first",
+    WARNING,
+)
+NO_UNITS = Fault(
+    "no-units",
+    "no G20 or G21 before the first move: millimeters are taken",
+    "say the units at the start of the program",
+    WARNING,
+)
+BAD_DIRECTIVE = Fault(
+    "bad-directive", "this comment switches nothing: {problem}", "write (aircut: ignore RULE), off or on", WARNING
+)
+
 FAULTS: dict[str, Fault] = {fault.code: fault for fault in list(globals().values()) if isinstance(fault, Fault)}

@@ -86,8 +86,9 @@ def arrange(rows: Sequence[Code], letters: Sequence[str], motion: Code | None, d
     supported(items)
     used(rows, letters, dialect)
     missing(rows, present)
-    if takers and takers[0].needs_axes and not axis_letters:
-        raise Refusal(F.MISSING_AXES, code=takers[0].name)
+    for row in takers:
+        if row.needs_axes and not axis_letters:
+            raise Refusal(F.MISSING_AXES, code=row.name)
     order = sorted([*rows, *items], key=lambda row: row.order)
     return Steps(tuple(order), False)
 

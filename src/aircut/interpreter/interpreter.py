@@ -65,6 +65,8 @@ class Interpreter(Run):
         self.units = {source.name: self.unit}
         self.found: dict[str, Path | None] = {}  # macro files by called name
         self.stack: list[Level] = []
+        self.ran = False  # the program was fit to be run
+        self.returned = False  # the file ended by M99, as macros do
         self.plans: dict[bytes, Shape] = {}
         self.routine = self.unit.entry()
         self.repeated = 0
@@ -102,6 +104,7 @@ class Interpreter(Run):
             self.tell(F.EMPTY_PROGRAM.at(self.unit.source.name, Span()))
         elif (self.settings.keep_going or not self.failed) and self.prepare():
             try:
+                self.ran = True
                 yield from self.blocks()
             except Stopped:
                 m.out.drop()
@@ -243,13 +246,14 @@ class Interpreter(Run):
             here = True
             while here:
                 if line >= end:
+                    place = line if line < self.routine.end else self.line
                     try:
                         if line >= self.routine.end:
                             line = self.run_off()
                             break
                         self.pass_mark(line)
                     except Refusal as refusal:
-                        self.tell_refusal(refusal, unit, self.line)
+                        self.tell_refusal(refusal, unit, place)
                         out.line = 0
                         raise Stopped from None
                     end = self.bound()
@@ -640,6 +644,7 @@ class Interpreter(Run):
     def leave(self) -> int:
         """M99, ENDSUB, RETURN: run the subroutine again, or go back to the caller. Raises Stopped."""
         if not self.stack:  # at top level it ends the program like the end of the file (AMB-CALL-10)
+            self.returned = True
             return self.run_off()
         m = self.state
         level = self.stack.pop()
@@ -665,6 +670,12 @@ class Interpreter(Run):
             return self.follow(level.back)
         return level.back
 
+    @property
+    def macro_file(self) -> bool:
+        """Whether the file is a macro, run by itself: it begins with an O or SUB, or ended by M99."""
+        main = self.units[self.files[0]]
+        return self.returned or main.entry() is not main.structure.main
+
     def run_off(self) -> int:
         """The routine has no more lines. Raises Stopped at the end of the program."""
         if self.stack:
@@ -676,7 +687,7 @@ class Interpreter(Run):
             return self.leave()
         if self.settings.mode is Mode.MDI:
             raise Stopped
-        if not self.unit.percent and self.settings.mode in WHOLE:
+        if not self.unit.percent and not self.macro_file and self.settings.mode in WHOLE:
             last = self.routine.end - 1
             while last > 0 and not self.unit.seen[last]:
                 last -= 1

@@ -14,6 +14,7 @@ from aircut.source import Source
 
 EXTENSION = ".ngc"
 ENCRYPTED = ".ngx"
+LONGEST = 255  # bytes of a file's name
 
 
 def has_extension(name: str) -> bool:
@@ -40,6 +41,8 @@ def find(name: str, folders: Iterable[Path]) -> Path | None:
 
 def exact(wanted: str, folders: Iterable[Path]) -> Path | None:
     """The file of this name in the first folder that has it; one that differs in case will do."""
+    if len(wanted.encode()) > LONGEST:
+        return None
     for folder in folders:
         if (folder / wanted).is_file():
             return folder / wanted

@@ -198,7 +198,7 @@ class Unit:
         if not code:
             return (comment_only(text), ()) if text.comments else (None, ())
         values = tuple(map(float, LITERAL.findall(code)))
-        if '"' in code or "<" in code or text.comments or MARK_START.match(code) or INFINITE in values:
+        if '"' in code or "<" in code or "?" in code or text.comments or MARK_START.match(code) or INFINITE in values:
             return self.fresh(text, text.code), ()
         shape = LITERAL.sub("?", code)
         statement = self.shared.get(shape)

@@ -1,0 +1,62 @@
+"""The text of a program as the rules search it: in small letters, lines read when they are asked for."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Iterator
+
+from aircut.diagnostics import Refusal
+from aircut.interpreter.interpreter import Interpreter
+from aircut.interpreter.unit import Unit
+from aircut.language.blocks import Line, parse
+from aircut.language.structure import find_labels
+
+#: A GOTO and its label; without one it is computed.
+GOTO = re.compile(rb"goto[ \t]*(?:(\d[\d \t]*)|.)")
+
+
+class Page:
+    """The program's own file, after the run. low: its bytes in small letters. Lines count from 0."""
+
+    def __init__(self, run: Interpreter) -> None:
+        self.run = run
+        self.unit: Unit = run.units[run.files[0]]
+        self.structure = self.unit.structure
+        self.low = small(self.unit)
+        self.gotos = list(self._gotos())
+
+    def line_of(self, place: int) -> int:
+        """The line of a byte."""
+        return bisect_right(self.unit.source.starts, place) - 1
+
+    def lines(self, *patterns: re.Pattern[bytes]) -> list[int]:
+        """Lines of the program on which one of the patterns stands, in order."""
+        first, end = self.structure.order[0].first, self.structure.order[-1].end
+        found = {self.line_of(match.start()) for pattern in patterns for match in pattern.finditer(self.low)}
+        return sorted(line for line in found if first <= line < end)
+
+    def parsed(self, line: int) -> Line | None:
+        """A line read; None where it cannot be."""
+        try:
+            return parse(self.unit.clean(line).code)
+        except Refusal:
+            return None
+
+    def _gotos(self) -> Iterator[tuple[int, list[int] | None]]:
+        """Lines with a GOTO, and where it may lead: None where that is computed."""
+        labels = None
+        for match in GOTO.finditer(self.low):
+            if labels is None:
+                labels = find_labels(self.unit.source, self.unit.block_delete)
+            line = self.line_of(match.start())
+            if match[1] is None:
+                yield line, None
+            else:
+                yield line, labels.get(int(match[1].translate(None, b" \t")[:18]), [])
+
+
+def small(unit: Unit) -> bytes:
+    """The bytes of a text in small letters."""
+    data: bytes = unit.source.data
+    return data.lower()
