@@ -3,8 +3,9 @@
 import random
 from pathlib import Path
 
-import inputs
 import pytest
+
+import inputs
 
 FOUND = sorted((Path(__file__).parent / "found").glob("*"))
 
