@@ -2,7 +2,7 @@
 
 from aircut.canon.commands import COMMANDS, Command
 from aircut.canon.record import CHUNK, Chunk, Event, Recorder, Recording
-from aircut.canon.toolpath import BY_HAND, COLUMNS, EXACT_PATH, EXACT_STOP, INVERSE_TIME, ROW, Kind, Toolpath
+from aircut.canon.toolpath import BY_HAND, COLUMNS, EXACT_PATH, EXACT_STOP, INVERSE_TIME, PART, ROW, TIP, Kind, Toolpath
 
 __all__ = [
     "BY_HAND",
@@ -12,7 +12,9 @@ __all__ = [
     "EXACT_PATH",
     "EXACT_STOP",
     "INVERSE_TIME",
+    "PART",
     "ROW",
+    "TIP",
     "Chunk",
     "Command",
     "Event",

@@ -11,6 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from aircut.geometry.kinematics import Setup
+
 
 class Command(NamedTuple):
     """One canonical command that is not motion."""
@@ -133,6 +135,11 @@ COMMANDS = {
         own("SET_TRAVERSE_RATE", "G103: highest rapid, mm/min; 0 none", "rate"),
         own("SET_DYNAMICS", "G104: mm/s², mm/s², percent; 0 the axes' own", "acceleration deceleration jerk"),
         own("TORCH_HEIGHT_CONTROL", "M17 1, M18 0", "on"),
+        own(
+            "TOOL_CENTER_POINT",
+            "kinematics in force (geometry.kinematics.Setup), mm; model 0: none",
+            " ".join(Setup._fields),
+        ),
         own("TOOL_CHANGE_MACRO", "M107 1, M108 0", "running"),
     )
 }

@@ -35,6 +35,9 @@ EXACT_PATH = 2  # no blending with its neighbors (G61)
 INVERSE_TIME = 4  # programmed under G93; `feed` is the resulting speed
 BY_HAND = 8  # the operator moves the machine there (G88): not in the listing
 
+TIP = 16  # under tool center point control: the feed is that of the tip
+PART = 32  # a part of a programmed move that others follow: the listing has the last one alone
+
 
 class Column(NamedTuple):
     """One column of the toolpath."""
@@ -49,14 +52,14 @@ COLUMNS = (
     *(Column(axis, "d", f"end point {axis.upper()} in machine coordinates, degrees") for axis in "abc"),
     Column("u", "d", "arc center, first axis of the plane, mm (0 for lines)"),
     Column("v", "d", "arc center, second axis of the plane, mm (0 for lines)"),
-    Column("feed", "d", "mm/min, or degrees/min when only rotary axes move; 0 for traverses"),
+    Column("feed", "d", "mm/min, or degrees/min when only rotary axes move; 0 for traverses; of the tip under TIP"),
     Column("line", "i", "line in its file, from 1"),
     Column("tool", "i", "tool in the spindle"),
     Column("turns", "h", "arc turns: + counterclockwise, - clockwise; 0 for lines"),
     Column("file", "H", "index into Recording.files"),
     Column("kind", "B", "Kind: 0 traverse, 1 feed, 2 arc, 3 probe"),
     Column("plane", "B", "arc plane: 0 XY (u X, v Y), 1 ZX (u Z, v X), 2 YZ (u Y, v Z)"),
-    Column("flags", "H", "EXACT_STOP 1, EXACT_PATH 2, INVERSE_TIME 4, BY_HAND 8"),
+    Column("flags", "H", "EXACT_STOP 1, EXACT_PATH 2, INVERSE_TIME 4, BY_HAND 8, TIP 16, PART 32"),
 )
 ROW = struct.Struct("<" + "".join(column.code for column in COLUMNS))
 AXES = "xyzabc"

@@ -181,6 +181,17 @@ UNKNOWN_TOOL = Fault(
 SPINDLE_LIMIT = Fault(
     "spindle-limit", "S{speed:g} is above the spindle's maximum: {limit:g} rpm is used", severity=WARNING
 )
+NO_RTCP = Fault(
+    "no-rtcp",
+    "{code}: the machine has no tool center point control: {why}",
+    "machine.toml: kinematics = rotary_table_ac, rotary_table_bc, tilting_spindle_ca or tilting_spindle_ab",
+)
+RTCP_CONFLICT = Fault("rtcp-conflict", "{code} cannot be used while {other} is in force")
+RTCP_TOO_LONG = Fault(
+    "rtcp-too-long",
+    "this move would need more than {limit:,} pieces to keep the tip on its way",
+    "check the angles of the rotary axes",
+)
 INDEXER = Fault(
     "indexer",
     "{axis} is an indexer and moves {how}",

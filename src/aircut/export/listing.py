@@ -1,7 +1,8 @@
 """The canonical listing: one canonical command a line, as LinuxCNC's stand-alone interpreter prints.
 
 Positions are in the program's units and relative to the offsets in force, which
-are themselves commands of the listing.
+are themselves commands of the listing. Under tool center point control they are
+those of the tip: a straight move has one line, an arc one for each chord.
 """
 
 from __future__ import annotations
@@ -9,9 +10,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 
-from aircut.canon import BY_HAND, COMMANDS, ROW, Chunk, Event, Kind
+from aircut.canon import BY_HAND, COMMANDS, PART, ROW, TIP, Chunk, Event, Kind
 from aircut.canon.commands import WRITTEN
 from aircut.geometry.arcs import PLANE_AXES
+from aircut.geometry.kinematics import Setup, forward
 
 INCH = 25.4  # mm
 NO_NUMBER = "N..... "
@@ -38,6 +40,7 @@ class Listing:
         self.raw = raw
         self.count = 0
         self.unit = 1.0  # mm a program unit
+        self.setup = Setup(0)
         self.work = [0.0] * 6
         self.shift = [0.0] * 6
         self.labels: dict[tuple[int, int], str] = {}
@@ -45,6 +48,7 @@ class Listing:
             "USE_LENGTH_UNITS": self.set_units,
             "SET_G5X_OFFSET": self.set_work,
             "SET_G92_OFFSET": self.set_shift,
+            "TOOL_CENTER_POINT": self.set_setup,
         }
 
     def set_units(self, event: Event) -> None:
@@ -56,6 +60,14 @@ class Listing:
     def set_shift(self, event: Event) -> None:
         self.shift = list(event.values)
 
+    def set_setup(self, event: Event) -> None:
+        self.setup = Setup(*event.values)
+
+    def tip(self, row: tuple[float, ...]) -> tuple[float, ...]:
+        """A row under tool center point control with the tip, as programmed, in place of the axes."""
+        axes = (row[0] + self.setup.tool_x, row[1] + self.setup.tool_y, row[2] + self.setup.tool_z)
+        return (*forward(self.setup, axes, row[3:6]), *row[3:])
+
     def write(self, chunk: Chunk) -> Iterator[str]:
         """The lines of a chunk, each with its line end."""
         events = iter(chunk.events)
@@ -64,8 +76,9 @@ class Listing:
             while event is not None and event.at <= at:
                 yield from self.event(event)
                 event = next(events, None)
-            if not row[15] & BY_HAND:
-                yield self.move(row)
+            flags = int(row[15])
+            if not flags & (BY_HAND | PART):
+                yield self.move(self.tip(row) if flags & TIP else row)
         while event is not None:
             yield from self.event(event)
             event = next(events, None)

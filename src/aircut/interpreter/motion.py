@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import partial
 from math import hypot
 
-from aircut.canon import EXACT_STOP, INVERSE_TIME, ROW, Kind
+from aircut.canon import EXACT_STOP, INVERSE_TIME, ROW, TIP, Kind
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.geometry import arcs
@@ -73,11 +73,11 @@ def target(m: State, w: Words) -> list[float] | None:
 
 def at_axes(m: State, axes: dict[int, float]) -> list[float]:
     """The programmed point at which these axes stand at these machine positions, and the others where they are."""
-    if m.frame is not None:
+    if m.frame is not None or m.setup is not None:
         machine = m.machine_position()
         for i, value in axes.items():
             machine[i] = value
-        return m.to_program([p - t for p, t in zip(machine, m.tool_offset, strict=True)])
+        return m.to_program(m.of_axes(machine))
     goal = m.position[:]
     for i, value in axes.items():
         goal[i] = value - m.offset[i] - m.tool_offset[i]
@@ -100,6 +100,20 @@ def write(m: State, kind: int, goal: list[float], speed: float, flags: int) -> N
     m.position = goal
 
 
+def write_axes(m: State, kind: int, goal: list[float], speed: float, flags: int) -> None:
+    """Move the axes straight to where they stand for a point of the program's frame: as write, but that tool center
+    point control looks on (AMB-RTCP-6).
+    """
+    if m.setup is None:
+        write(m, kind, goal, speed, flags)
+        return
+    if m.indexers:
+        rotary.check_indexers(m, kind, goal)
+    axes = m.to_axes(m.to_space(goal))
+    RECORDER.line(m, kind, [a - t for a, t in zip(axes, m.tool_offset, strict=True)], speed, flags | TIP)
+    m.position = goal
+
+
 def write_arc(m: State, end: list[float], center: tuple[float, float], turns: int, speed: float, flags: int) -> None:
     """Move along an arc of the program's frame (center in the plane's axes), and be at its end."""
     if m.indexers:
@@ -114,7 +128,7 @@ def traverse(m: State, w: Words) -> None:
     """G0: as fast as the axes can."""
     goal = target(m, w)
     if goal is not None:
-        write(m, TRAVERSE, goal, 0.0, m.flags)
+        (write_axes if m.machine_frame else write)(m, TRAVERSE, goal, 0.0, m.flags)
         if m.macro is not None:
             trigger(m)
     m.machine_frame = False
@@ -136,6 +150,7 @@ def feed(m: State, w: Words) -> None:
     if m.exact_stop:
         flags |= EXACT_STOP
         m.exact_stop = False
+    onward = write_axes if m.machine_frame else write
     m.machine_frame = False
     if m.inverse_time:
         flags |= INVERSE_TIME
@@ -143,7 +158,7 @@ def feed(m: State, w: Words) -> None:
         speed = line_speed(m, w, goal)
     else:
         speed = m.feed
-    write(m, FEED, goal, speed, flags)
+    onward(m, FEED, goal, speed, flags)
     if m.macro is not None:
         trigger(m)
 
@@ -273,7 +288,7 @@ def go_home(stored: str, m: State, w: Words) -> None:
     home = getattr(m, stored)
     goal = at_axes(m, {i: home[i] for i, axis in NUMBERED_AXES if axis in m.axes and (middle is None or axis in w)})
     if apart(goal, m.position):
-        write(m, TRAVERSE, goal, 0.0, m.flags)
+        write_axes(m, TRAVERSE, goal, 0.0, m.flags)
 
 
 def apart(goal: list[float], place: list[float]) -> bool:

@@ -12,7 +12,7 @@ from typing import Any
 
 from aircut.diagnostics import Fault, Refusal
 from aircut.diagnostics import faults as F
-from aircut.interpreter.motion import PROBE, at_axes, target, write
+from aircut.interpreter.motion import PROBE, at_axes, target, write_axes
 from aircut.interpreter.requests import Probe, Probed, Request
 from aircut.interpreter.state import State
 from aircut.interpreter.table import Code, Group, Order, Words
@@ -42,11 +42,11 @@ def probe(toward: bool, alarm: bool, m: State, w: Words) -> Generator[Request, A
     assert goal is not None
     m.machine_frame = False
     check(m, w, goal)
-    aim = [g + t for g, t in zip(m.to_space(goal), m.tool_offset, strict=True)]
+    aim = m.to_axes(m.to_space(goal))
     m.out.event("TURN_PROBE_ON")
     reply: Probed | None = yield Probe(tuple(m.machine_position()), tuple(aim), toward, m.tool, m.feed)
     stop = aim if reply is None else list(reply.position)
-    write(m, PROBE, at_axes(m, dict(enumerate(stop))), m.feed, m.flags)
+    write_axes(m, PROBE, at_axes(m, dict(enumerate(stop))), m.feed, m.flags)
     m.out.event("TURN_PROBE_OFF")
     m.probe_state = None if reply is None else float(reply.state)
     if reply is None or reply.state == SUCCESS:

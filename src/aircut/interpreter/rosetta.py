@@ -18,6 +18,7 @@ from aircut.interpreter import (
     motion,
     offsets,
     probing,
+    rtcp,
     tooling,
 )
 from aircut.interpreter.arranging import code_name
@@ -33,12 +34,9 @@ def unreachable(m: State, w: Words) -> None:
 
 
 later = partial(Code, run=unreachable, supported=False)
-length = partial(later, group=Group.TOOL_LENGTH, order=Order.TOOL_LENGTH, takes="h")
 
 #: Codes of the language that cannot be run yet: programs that use them are refused.
 LATER = (
-    length("G43.4", "Tool center point control"),
-    length("G43.7", "Tool center point control with own offsets", axes=True),
     later("G51", "Scaling", group=Group.SCALING, order=Order.SCALING, axes=True, takes="ijkp"),
     later("G68", "Rotation", group=Group.ROTATION, order=Order.ROTATION, axes=True, takes="r"),
     later("G68.2", "Tilted plane", group=Group.ROTATION, order=Order.ROTATION, axes=True, takes="ijk"),
@@ -51,6 +49,7 @@ CODES = (
     *cutter.CODES,
     *offsets.CODES,
     *tooling.CODES,
+    *rtcp.CODES,
     *auxiliary.CODES,
     *inputs.CODES,
     *messages.CODES,
@@ -120,7 +119,7 @@ ROSETTA = Dialect(
     name="rosetta",
     title="RosettaCNC",
     interpreter=Interpreter,
-    codes={key(row): row for row in CODES},
+    codes={key(row): rtcp.guarded(row) for row in CODES},
     items={row.name.lower(): row for row in (*modes.ITEMS, *auxiliary.ITEMS)},
     unsupported=UNSUPPORTED,
     ranges=RANGES,

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 from aircut.canon import Recorder
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.geometry import kinematics
+from aircut.geometry.kinematics import Setup
 from aircut.interpreter.path import RECORDER, Onward, Place, Stage
 from aircut.language.arithmetic import EQUAL
 from aircut.machine import Machine
@@ -61,6 +63,7 @@ class State:
         self.second_home = [0.0] * 6  # G30
         self.tools = dict(machine.tools)  # the run's own table
         self.tool_offset = [0.0] * 6
+        self.setup: Setup | None = None  # of tool center point control
 
         self.modal: dict[Group, Code] = {}
         self.motion: Code | None = None  # the modal code of group MOTION
@@ -167,7 +170,19 @@ class State:
 
     def machine_position(self) -> list[float]:
         """Positions of the machine's axes: the tool's offset included."""
-        return [s + t for s, t in zip(self.to_space(self.position), self.tool_offset, strict=True)]
+        return self.to_axes(self.to_space(self.position))
+
+    def to_axes(self, space: Place) -> Place:
+        """Positions of the machine's axes that put the controlled point at a place in space."""
+        if self.setup is None:
+            return [s + t for s, t in zip(space, self.tool_offset, strict=True)]
+        return [*kinematics.inverse(self.setup, space[:3], space[3:]), *space[3:]]
+
+    def of_axes(self, axes: Place) -> Place:
+        """Where in space the controlled point is when the machine's axes stand so."""
+        if self.setup is None:
+            return [a - t for a, t in zip(axes, self.tool_offset, strict=True)]
+        return [*kinematics.forward(self.setup, axes[:3], axes[3:]), *axes[3:]]
 
     # --- variables
 

@@ -6,11 +6,14 @@ Sources: 000 sections 1.1, 1.2, 3.5; decisions AMB-TC-*, AMB-TT-*, AMB-XF-16.
 from __future__ import annotations
 
 from functools import partial
+from typing import TYPE_CHECKING
 
 import msgspec
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.geometry.kinematics import Setup
+from aircut.interpreter import path
 from aircut.interpreter.auxiliary import known_tool
 from aircut.interpreter.calls import Call
 from aircut.interpreter.motion import LINEAR_AXES
@@ -18,6 +21,9 @@ from aircut.interpreter.state import State, out_of_range, whole
 from aircut.interpreter.table import Code, Group, Order, Words
 from aircut.machine import Tool
 from aircut.machine.tools import EMPTY
+
+if TYPE_CHECKING:
+    from aircut.interpreter.rtcp import Control
 
 TOOL_CHANGE = "tool_change.ngc"
 TYPES = 8  # the highest tool type
@@ -29,13 +35,19 @@ def tool_of(m: State, w: Words, letter: str) -> Tool:
     return m.tools.get(number, EMPTY)
 
 
-def compensate(m: State, offset: list[float], tool: Tool) -> None:
-    """Put a tool offset in force: the machine stays, the program position changes."""
-    space = zip(m.to_space(m.position), m.tool_offset, offset, strict=True)
-    m.position = m.to_program([p + b - a for p, b, a in space])
+def compensate(m: State, offset: list[float], tool: Tool, control: Control | None = None) -> None:
+    """Put a tool offset in force, with tool center point control or without: the machine stays, the program
+    position changes.
+    """
+    axes = m.machine_position()
+    before, m.setup = m.setup, None if control is None else control.setup
     m.tool_offset = offset
     m.compensated_tool = tool
+    m.position = m.to_program(m.of_axes(axes))
     m.out.event("USE_TOOL_LENGTH_OFFSET", *offset, 0.0, 0.0, 0.0)
+    if before != m.setup:
+        path.set_stage(m, "rtcp", control)
+        m.out.event("TOOL_CENTER_POINT", *(m.setup or Setup(0)))
 
 
 def length(m: State, w: Words) -> None:

@@ -96,6 +96,7 @@ class Options(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     analog_inputs: Count = 8
     analog_outputs: Count = 8
     peck_retract: Positive = 0.254  # mm, whatever the units in force (AMB-CYC-7)
+    rtcp: bool = True  # G43.4 and G43.7, where the kinematics are those of a five-axis machine (AMB-RTCP-2)
     entry: Literal["nist", "easy", "normal"] = "nist"  # lead-in of cutter compensation (AMB-CMP-5)
 
 

@@ -1,0 +1,135 @@
+"""Tool center point control, from the program to the axes."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+import aircut
+from aircut.canon import TIP, Kind
+from aircut.geometry.kinematics import MODELS, Setup, array_of, forward
+from aircut.machine import Machine, Tool
+from aircut.machine.config import File, Options, RotaryTable, TiltingSpindle, axis_of
+from test_kinematics import composed
+
+TOLERANCE = 0.01
+LETTERS = {2: "ac", 3: "bc", 4: "ca", 5: "ab"}
+TOOL = (0.5, -0.25, 60.0)
+ARMS = (3.0, -7.0, -40.0, 2.0, 20.0, 150.0, -1.0, 5.0, -180.0)  # D, H, J
+
+
+def machine(model: int, inverse: str = "", rtcp: bool = True) -> Machine:
+    """A machine of a model, its arms of odd lengths."""
+    settings = {letter: {"convention": "inverse"} if letter in inverse else {} for letter in "xyz" + LETTERS[model]}
+    axes = {letter: axis_of(letter, given) for letter, given in settings.items()}
+    table, head = RotaryTable(*ARMS[:3]), TiltingSpindle(*ARMS[3:])
+    file = File(
+        kinematics=MODELS[model].name,  # type: ignore[arg-type]
+        axes=axes,
+        rotary_table=table,
+        tilting_spindle=head,
+        options=Options(rtcp=rtcp),
+    )
+    return Machine(file, {1: Tool(1, x=TOOL[0], y=TOOL[1], z=TOOL[2])}, own_tools=True)
+
+
+def setup(model: int, inverse: str = "") -> Setup:
+    return Setup(model, *TOOL, *ARMS, *(-1.0 if letter in inverse else 1.0 for letter in "abc"))
+
+
+def axes_of(result: aircut.Result) -> NDArray[np.float64]:
+    """Positions of the axes at the ends of the rows, the tool's offset included, (n, 6)."""
+    return result.toolpath.ends() + np.array([*TOOL, 0.0, 0.0, 0.0])
+
+
+@pytest.mark.parametrize("inverse", ["", "abc"])
+@pytest.mark.parametrize("model", MODELS)
+def test_ends_are_those_of_the_matrices(model: int, inverse: str) -> None:
+    first, second = LETTERS[model].upper()
+    moves = [(10, 20, 30, 40, -50), (10, 20, 30, -400, 90), (-100, 5, -3, 0, 12.5), (7, 8, 9, 0, 0)]
+    text = "".join(f"G1 X{x} Y{y} Z{z} {first}{o} {second}{i} F500\n" for x, y, z, o, i in moves)
+    result = aircut.loads(f"G43.4 H1\n{text}M2\n").run(machine(model, inverse))
+    assert result.ok
+    lines, axes = result.toolpath.line, axes_of(result)
+    for line, (x, y, z, o, i) in enumerate(moves, 2):
+        last = axes[np.flatnonzero(lines == line)[-1]]
+        angles = {"a": 0.0, "b": 0.0, "c": 0.0, first.lower(): float(o), second.lower(): float(i)}
+        assert last[:3] == pytest.approx(composed(setup(model, inverse), np.array([x, y, z]), angles), abs=1e-9)
+        assert last[3:].tolist() == [angles[letter] for letter in "abc"]
+
+
+def tips_along(model: int, result: aircut.Result, parts: int = 9) -> list[NDArray[np.float64]]:
+    """Where the tip is at some places of each row when all axes move straight, (n, 3) for each place."""
+    ends = axes_of(result)
+    starts = np.vstack([np.zeros(6), ends[:-1]])
+    found = []
+    for part in np.linspace(0.0, 1.0, parts):
+        place = starts + part * (ends - starts)
+        found.append(array_of(forward(setup(model), place[:, :3].T, place[:, 3:].T)))
+    return found
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_turning_alone_leaves_the_tip(model: int) -> None:
+    first, second = LETTERS[model].upper()
+    program = f"G43.4 H1\nG1 X50 Y-30 Z20 F500\n{first}90\n{second}-200\n{first}0 {second}0\nM2\n"
+    result = aircut.loads(program).run(machine(model))
+    turning = result.toolpath.line > 2
+    assert turning.sum() > 20
+    for tips in tips_along(model, result):
+        assert np.abs(np.linalg.norm(tips[turning] - [50, -30, 20], axis=1)).max() <= TOLERANCE
+
+
+@given(
+    st.sampled_from(sorted(MODELS)),
+    st.lists(st.tuples(*[st.integers(-300, 300)] * 3, *[st.integers(-400, 400)] * 2), min_size=1, max_size=4),
+    st.sampled_from(["G0", "G1"]),
+)
+def test_the_tip_keeps_to_its_lines(model: int, moves: list[tuple[int, ...]], code: str) -> None:
+    first, second = LETTERS[model].upper()
+    lines = "".join(f"{code} X{x} Y{y} Z{z} {first}{o} {second}{i} F500\n" for x, y, z, o, i in moves)
+    result = aircut.loads(f"G43.4 H1\n{lines}M2\n").run(machine(model))
+    start = forward(setup(model), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    points = np.array([start, *(move[:3] for move in moves)], float)
+    which = result.toolpath.line - 2
+    a, b = points[which], points[which + 1]
+    for tips in tips_along(model, result):
+        along = np.einsum("ij,ij->i", tips - a, b - a) / np.maximum(np.einsum("ij,ij->i", b - a, b - a), 1e-12)
+        foot = a + np.clip(along, 0.0, 1.0)[:, None] * (b - a)
+        assert np.linalg.norm(tips - foot, axis=1).max() <= TOLERANCE
+    assert (result.toolpath.flags & TIP).all()
+
+
+@given(st.sampled_from(sorted(MODELS)), st.sampled_from([17, 18, 19]), st.integers(-90, 90), st.integers(-200, 200))
+def test_the_tip_keeps_to_its_arcs(model: int, plane: int, o: int, i: int) -> None:
+    """Two turns of a helix of radius 10 about (50, 20), a quarter less."""
+    first, second = LETTERS[model].upper()
+    axes = {17: "XYZ", 18: "ZXY", 19: "YZX"}[plane]
+    center = {17: "I-10 J0", 18: "K-10 I0", 19: "J-10 K0"}[plane]
+    program = (
+        f"G43.4 H1 G{plane}\nG1 {axes[0]}60 {axes[1]}20 {axes[2]}0 {first}0 {second}0 F500\n"
+        f"G3 {axes[0]}50 {axes[1]}30 {axes[2]}5 {center} {first}{o} {second}{i} P2\nM2\n"
+    )
+    result = aircut.loads(program).run(machine(model))
+    assert result.ok, result.diagnostics
+    u, v, w = ("XYZ".index(axis) for axis in axes)
+    arc = result.toolpath.line == 3
+    count = arc.sum()
+    assert (result.toolpath.kind[arc] == Kind.FEED).all()
+    along = tips_along(model, result)
+    assert along[-1][arc][-1][[u, v, w]] == pytest.approx([50, 30, 5], abs=1e-9)
+    for place, tips in enumerate(along):
+        radius = np.hypot(tips[arc][:, u] - 50, tips[arc][:, v] - 20)
+        assert np.abs(radius - 10).max() <= TOLERANCE
+        height = 5 * (np.arange(count) + place / (len(along) - 1)) / count
+        assert np.abs(tips[arc][:, w] - height).max() <= TOLERANCE
+    angle = np.unwrap(np.arctan2(along[-1][arc][:, v] - 20, along[-1][arc][:, u] - 50))
+    assert angle[-1] - angle[0] == pytest.approx(2.5 * math.pi * (1 - 1 / count))
+
+
+def test_not_without_the_feature() -> None:
+    result = aircut.loads("G43.4 H1\nM2\n").run(machine(2, rtcp=False))
+    assert [d.code for d in result.diagnostics if d.severity.value == "error"] == ["no-rtcp"]
