@@ -106,8 +106,7 @@ def arc(
     """Measure an arc or helix into a slot; returns its length.
 
     What its two axes do is bounded over all directions, so the bound is the same all around. Of the lesser
-    one's acceleration the curvature may take √3/2, which leaves a half along the path; where the feed asks
-    for less, more is left.
+    one's acceleration the curvature may take √3/2, which leaves a half along the path.
     """
     tau: cython.double = 6.283185307179586
     u: cython.int = 0
@@ -202,10 +201,8 @@ def arc(
         part = (0.8 * hard - twist * speed * speed * speed) / along
         if part < jerk:
             jerk = part
-    part = bend * speed * speed
-    part = sqrt(most * most - part * part) / along
-    if part < accel:
-        accel = part
+    if along * accel > most / 2.0:
+        accel = most / 2.0 / along
     at = 8 * slot
     facts[at] = length
     facts[at + 1] = asked
@@ -241,7 +238,7 @@ def kink(
     most: cython.double
     for i in range(6):
         jump = fabs(ways[12 * after + i] - ways[12 * before + 6 + i])
-        if jump > 0.2:  # a corner: nothing is gained by not stopping
+        if jump > 0.2 or cycle == 0.0 and jump > 1e-9:  # a corner: nothing is gained by not stopping
             return 0.0
         if jump > 1e-9:
             most = share * cycle * limits[6 + i] / jump
@@ -313,8 +310,8 @@ def fillet(
         speed = most
     bounds[0] = 2.0 * radius * atan2(s, c)
     bounds[1] = speed
-    bounds[2] = accel
-    bounds[3] = 1.0 / radius
+    bounds[2] = accel / 2.0
+    bounds[3] = 1e300
     return take
 
 
@@ -397,6 +394,73 @@ def curve(
     return take
 
 
+@cython.cfunc
+@cython.boundscheck(False)
+@cython.wraparound(False)
+def emit(
+    out: cython.double[::1],
+    room: cython.Py_ssize_t,
+    at: cython.Py_ssize_t,
+    length: cython.double,
+    speed: cython.double,
+    accel: cython.double,
+    decel: cython.double,
+    jerk: cython.double,
+    enter: cython.double,
+    offset: cython.double,
+) -> cython.double:
+    """Write one piece into the columns of `lay`."""
+    out[at] = length
+    out[room + at] = speed
+    out[2 * room + at] = accel
+    out[3 * room + at] = decel
+    out[4 * room + at] = jerk
+    out[5 * room + at] = enter
+    out[6 * room + at] = offset
+    return 0.0
+
+
+@cython.cfunc
+@cython.boundscheck(False)
+@cython.wraparound(False)
+def body(
+    out: cython.double[::1],
+    room: cython.Py_ssize_t,
+    at: cython.Py_ssize_t,
+    length: cython.double,
+    offset: cython.double,
+    speed: cython.double,
+    enter: cython.double,
+    head: cython.double,
+    tail: cython.double,
+    share: cython.double,
+    slot: cython.int,
+    facts: cython.double[::1],
+) -> cython.Py_ssize_t:
+    """Write what blends have left of a move; returns the index after it.
+
+    head, tail: lengths beside joints where something jumps: there the motion leaves a share to the jump.
+    """
+    accel: cython.double = facts[8 * slot + 3]
+    decel: cython.double = facts[8 * slot + 4]
+    jerk: cython.double = facts[8 * slot + 5]
+    rest: cython.double = 1.0 - share
+    if 2.0 * (head + tail) > length:
+        emit(out, room, at, length, speed, rest * accel, rest * decel, rest * jerk, enter, offset)
+        return at + 1
+    if head > 0.0:
+        emit(out, room, at, head, speed, rest * accel, rest * decel, rest * jerk, enter, offset)
+        enter = 1e300
+        at += 1
+    emit(out, room, at, length - head - tail, speed, accel, decel, jerk, enter, offset + head)
+    at += 1
+    if tail > 0.0:
+        enter = offset + length - tail
+        emit(out, room, at, tail, speed, rest * accel, rest * decel, rest * jerk, 1e300, enter)
+        at += 1
+    return at
+
+
 @cython.boundscheck(False)
 @cython.wraparound(False)
 @cython.cdivision(True)
@@ -423,13 +487,7 @@ def lay(
     regime_at: cython.longlong[::1],
     regimes: cython.double[::1],
     work: cython.double[::1],
-    length: cython.double[::1],
-    speed: cython.double[::1],
-    accel: cython.double[::1],
-    decel: cython.double[::1],
-    jerk: cython.double[::1],
-    enter: cython.double[::1],
-    offset: cython.double[::1],
+    out: cython.double[::1],
     move: cython.int[::1],
     shape: cython.uchar[::1],
 ):
@@ -438,15 +496,18 @@ def lay(
     x to flags: the toolpath's columns. points: (12,), the start in its first six. stops: sorted indices of
     moves before which the machine stands. regime_at, regimes: from move regime_at[j] on holds regimes[7j:]:
     blend tolerance mm, acceleration and deceleration of feed moves (0 the axes' own), share of the jerk,
-    highest rapid mm/s (0 the axes' own), feed and rapid factors. work: (68,) scratch. smooth: blends
-    have no jump of curvature. The rest is written, 2n long: speed and enter are highest speeds, all along
-    and at the start; offset: where on its move the piece starts, of a blend how much of each line it takes.
+    highest rapid mm/s (0 the axes' own), feed and rapid factors. work: (72,) scratch. smooth: blends
+    have no jump of curvature. cycle, share: see `kink`.
+    Written, all 4n long: out, seven columns end to end: length; highest speed all along; acceleration,
+    deceleration, jerk along the path; highest speed at the start; offset, where on its move the piece
+    starts, of a blend how much of each line it takes. move: index; shape: LINE, ARC, FILLET, CURVE.
     """
     count: cython.Py_ssize_t = x.shape[0]
+    space: cython.Py_ssize_t = move.shape[0]
     ways: cython.double[::1] = work[0:24]
     bends: cython.double[::1] = work[24:48]
     facts: cython.double[::1] = work[48:64]
-    bounds: cython.double[::1] = work[64:68]
+    bounds: cython.double[::1] = work[64:72]
     at: cython.Py_ssize_t = 0
     i: cython.Py_ssize_t
     j: cython.int
@@ -470,6 +531,12 @@ def lay(
     is_arc: cython.bint
     linked: cython.bint
     slow: cython.double
+    head: cython.double = 0.0
+    tail: cython.double
+    reach: cython.double = 3.0 if smooth else 1.0  # cycles over which a jump is seen
+    form: cython.int = 2
+    k: cython.Py_ssize_t
+    start: cython.Py_ssize_t
 
     for i in range(count):
         while regime + 1 < regime_at.shape[0] and regime_at[regime + 1] <= i:
@@ -496,7 +563,7 @@ def lay(
             left = line(now, wanted, points, ways, bends, facts, limits)
         for j in range(6):
             points[j] = points[6 + j]
-        if kind[i] == 3:
+        if kind[i] == 3 or (has_before and (kind[i] == 0) != (kind[last] == 0)):
             halt = True
         if left == 0.0:
             if flags[i] & 1:
@@ -519,56 +586,52 @@ def lay(
             slow = facts[8 * before + 2]
             if not halt:
                 if blends and not is_arc and facts[8 * before + 7] == 0.0:
-                    room = facts[8 * before] - trimmed
+                    room = facts[8 * before] - trimmed - head
                     if facts[8 * now] / 2.0 < room:
                         room = facts[8 * now] / 2.0
                     wanted = slow if slow < facts[8 * now + 2] else facts[8 * now + 2]
                     if smooth or facts[8 * before + 6] > 0.0 or facts[8 * now + 6] > 0.0:
                         take = curve(before, now, smooth, wanted, room, tolerance, ways, limits, bounds)
-                        j = 3
+                        form = 3
                     else:
                         take = fillet(before, now, room, tolerance, ways, limits, bounds)
-                        j = 2
+                        form = 2
                         if take > 0.0:
                             if wanted < bounds[1]:
                                 bounds[1] = wanted
-                            ratio = bounds[1] * bounds[1] * bounds[3]
-                            bounds[2] = sqrt(bounds[2] * bounds[2] - ratio * ratio)
-                            bounds[3] = 1e300
                 if take > 0.0:
                     most = 1e300
                 else:
                     most = kink(before, now, cycle, share, ways, bends, limits)
                     linked = most < 1e300 and most > 0.0
+            tail = 0.0
+            if linked:
+                tail = reach * most * cycle + reach * facts[8 * before + 3] * cycle * cycle
             left = facts[8 * before] - trimmed - take
+            start = at
             if left > 1e-12 * facts[8 * before]:
-                if linked and left / cycle < slow:
+                if (tail > 0.0 or head > 0.0) and left / cycle < slow:
                     slow = left / cycle
-                length[at] = left
-                speed[at] = slow
-                accel[at] = facts[8 * before + 3]
-                decel[at] = facts[8 * before + 4]
-                jerk[at] = facts[8 * before + 5]
-                enter[at] = entry
-                offset[at] = trimmed
-                move[at] = last
-                shape[at] = 1 if facts[8 * before + 7] > 0.0 else 0
-                at += 1
+                at = body(out, space, at, left, trimmed, slow, entry, head, tail, share, before, facts)
+                entry = 1e300
+            for k in range(start, at):
+                move[k] = last
+                shape[k] = 1 if facts[8 * before + 7] > 0.0 else 0
             if take > 0.0:
-                length[at] = bounds[0]
-                speed[at] = bounds[1]
-                accel[at] = bounds[2] if bounds[2] < facts[8 * before + 3] else facts[8 * before + 3]
-                decel[at] = bounds[2] if bounds[2] < facts[8 * before + 4] else facts[8 * before + 4]
-                jerk[at] = bounds[3] if bounds[3] < facts[8 * before + 5] else facts[8 * before + 5]
-                enter[at] = 1e300
-                offset[at] = take
+                for j in range(3):
+                    if facts[8 * before + 3 + j] < bounds[2 if j < 2 else 3]:
+                        bounds[4 + j] = facts[8 * before + 3 + j]
+                    else:
+                        bounds[4 + j] = bounds[2 if j < 2 else 3]
+                emit(out, space, at, bounds[0], bounds[1], bounds[4 + 0], bounds[4 + 1], bounds[4 + 2], entry, take)
                 move[at] = last
-                shape[at] = j
+                shape[at] = form
                 at += 1
             entry = most
             trimmed = take
-            if linked and facts[8 * now] / cycle < facts[8 * now + 2]:
-                facts[8 * now + 2] = facts[8 * now] / cycle
+            head = 0.0
+            if linked:
+                head = reach * most * cycle + reach * facts[8 * now + 3] * cycle * cycle
         has_before = True
         last = i
         halt = (flags[i] & 1) != 0 or kind[i] == 3
@@ -579,15 +642,13 @@ def lay(
 
     if has_before:
         left = facts[8 * before] - trimmed
+        start = at
         if left > 1e-12 * facts[8 * before]:
-            length[at] = left
-            speed[at] = facts[8 * before + 2]
-            accel[at] = facts[8 * before + 3]
-            decel[at] = facts[8 * before + 4]
-            jerk[at] = facts[8 * before + 5]
-            enter[at] = entry
-            offset[at] = trimmed
-            move[at] = last
-            shape[at] = 1 if facts[8 * before + 7] > 0.0 else 0
-            at += 1
+            slow = facts[8 * before + 2]
+            if head > 0.0 and left / cycle < slow:
+                slow = left / cycle
+            at = body(out, space, at, left, trimmed, slow, entry, head, 0.0, share, before, facts)
+        for k in range(start, at):
+            move[k] = last
+            shape[k] = 1 if facts[8 * before + 7] > 0.0 else 0
     return at

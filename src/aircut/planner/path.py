@@ -88,11 +88,8 @@ class Path:
         t = self.toolpath
         row = self.move[piece]
         start, end = self.ends(row - 1), self.ends(row)
-        part = ((self.offset[piece] + way) / self.length[piece])[:, None]
-        place = start + part * (end - start)
-        rate = (end - start) / self.length[piece][:, None]
-        second = np.zeros_like(place)
-        for plane, (u, v, _) in enumerate(arcs.PLANE_AXES):
+        place, rate, second = np.empty_like(start), np.empty_like(start), np.zeros_like(start)
+        for plane, (u, v, w) in enumerate(arcs.PLANE_AXES):
             which = np.flatnonzero(t.plane[row] == plane)
             if not len(which):
                 continue
@@ -102,9 +99,13 @@ class Path:
             turn = arcs.sweeps(first, last, center, t.turns[r])
             angle = np.arctan2(*(first - center).T[::-1])
             radii = np.hypot(*(first - center).T), np.hypot(*(last - center).T)
-            f = part[which, 0]
+            straight = (end - start)[which][:, [w, 3, 4, 5]]
+            around = (np.hypot(*(first - center).T) + np.hypot(*(last - center).T)) / 2 * turn
+            length = np.sqrt(around**2 + (straight**2).sum(axis=1))
+            f = (self.offset[piece[which]] + way[which]) / length
+            place[which] = start[which] + f[:, None] * (end - start)[which]
+            rate[which] = (end - start)[which] / length[:, None]
             theta, radius = angle + f * turn, radii[0] + f * (radii[1] - radii[0])
-            length = self.length[piece[which]]
             swing, grow = turn / length, (radii[1] - radii[0]) / length
             c, s = np.cos(theta), np.sin(theta)
             at_u, at_v = center[:, 0] + radius * c, center[:, 1] + radius * s

@@ -109,8 +109,9 @@ def lay(
     import numpy as np
 
     count = len(toolpath)
-    room = 2 * count
-    floats = {name: np.empty(room) for name in ("length", "speed", "accel", "decel", "jerk", "enter", "offset")}
+    room = 4 * count
+    names = ("length", "speed", "accel", "decel", "jerk", "enter", "offset")
+    out = np.empty((len(names), room))
     move, shape = np.empty(room, np.int32), np.empty(room, np.uint8)
     bounds = [value if value is not None else 1.0 for value in (*limits.velocity, *limits.acceleration)]
     bounds += [value if smooth and value is not None and isfinite(value) else 1e300 for value in limits.jerk]
@@ -125,8 +126,8 @@ def lay(
         stops.astype(np.int64),
         regime_at.astype(np.int64),
         np.array([regime.row for regime in regimes]).ravel(),
-        np.zeros(68),
-        *floats.values(),
+        np.zeros(72),
+        out.ravel(),
         move,
         shape,
     )
@@ -134,7 +135,7 @@ def lay(
         row = -1 - got
         kind = Kind(int(toolpath.kind[row])).name.lower()
         raise PlanError(f"line {toolpath.line[row]}: a {kind} move at a feed of {toolpath.feed[row]:g} never ends")
-    columns: dict[str, NDArray[Any]] = {**floats, "move": move, "shape": shape}
+    columns = {**dict(zip(names, out, strict=True)), "move": move, "shape": shape}
     return {name: column[:got] for name, column in columns.items()}
 
 
