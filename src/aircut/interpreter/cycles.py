@@ -84,14 +84,6 @@ class Cycle(NamedTuple):
     turning: bool = False  # the spindle must turn, as it is stopped and started
 
 
-class Rules(NamedTuple):
-    """How a dialect's cycles are more or less strict."""
-
-    dwell: bool = False  # P must be given where it is taken
-    none: bool = True  # L0 drills nothing; else it is refused
-    still: bool = True  # a rotary word that does not move may stand; else it is refused
-
-
 # --- the cycles
 
 
@@ -169,19 +161,19 @@ def bore_and_dwell(hole: Hole) -> Iterator[Step]:
 # --- carrying them out
 
 
-def run(cycle: Cycle, rules: Rules, m: State, w: Words) -> None:
+def run(cycle: Cycle, m: State, w: Words) -> None:
     """Run a cycle that has nothing to ask."""
-    for _ in conversation(cycle, rules, m, w):
+    for _ in conversation(cycle, m, w):
         pass
 
 
-def conversation(cycle: Cycle, rules: Rules, m: State, w: Words) -> Generator[Request, Any, None]:
+def conversation(cycle: Cycle, m: State, w: Words) -> Generator[Request, Any, None]:
     """Run a cycle at each of its places. Raises Refusal before anything has moved."""
     normal = PLANE_AXES[m.plane][2]
-    check(cycle, rules, m, w)
-    sticky = remember(cycle, rules, normal, m, w)
+    check(cycle, m, w)
+    sticky = remember(cycle, normal, m, w)
     hole = measure(sticky, normal, m, w)
-    repeats = repeats_of(rules, w)
+    repeats = repeats_of(m, w)
     if repeats * (hole.top - hole.bottom) > MOST * (hole.bite or 1e9):
         raise out_of_range(sticky.words, "q", "so many bites are a mistake")
     m.cycle = sticky
@@ -189,7 +181,7 @@ def conversation(cycle: Cycle, rules: Rules, m: State, w: Words) -> Generator[Re
         yield from drive(cycle.steps, hole, sticky.level, repeats, m, w)
 
 
-def check(cycle: Cycle, rules: Rules, m: State, w: Words) -> None:
+def check(cycle: Cycle, m: State, w: Words) -> None:
     """Refuse a cycle that the modes or the rotary words forbid (AMB-CYC-9)."""
     if m.inverse_time:
         raise Refusal(F.CYCLE_INVERSE_TIME, code=cycle.name)
@@ -199,11 +191,11 @@ def check(cycle: Cycle, rules: Rules, m: State, w: Words) -> None:
         raise Refusal(F.CYCLE_SPINDLE, code=cycle.name)
     goal = target(m, w) or m.position
     for i, letter in ROTARY_AXES:
-        if letter in w and (not rules.still or abs(goal[i] - m.position[i]) > SAME):
+        if letter in w and (not m.dialect.cycles.still or abs(goal[i] - m.position[i]) > SAME):
             raise Refusal(F.CYCLE_ROTARY, letter, code=cycle.name, axis=letter.upper())
 
 
-def remember(cycle: Cycle, rules: Rules, normal: int, m: State, w: Words) -> Sticky:
+def remember(cycle: Cycle, normal: int, m: State, w: Words) -> Sticky:
     """The words in force, those of this block included. Raises Refusal where one is missing (AMB-CYC-4)."""
     axis = AXES[normal]
     before = m.cycle
@@ -212,7 +204,7 @@ def remember(cycle: Cycle, rules: Rules, normal: int, m: State, w: Words) -> Sti
     if axis in w:
         words[DEPTH] = w[axis]
     needed = {"r": MEANINGS["r"], DEPTH: MEANINGS[DEPTH]}
-    needed |= {letter: MEANINGS[letter] for letter in cycle.takes if letter == "q" or rules.dwell}
+    needed |= {letter: MEANINGS[letter] for letter in cycle.takes if letter == "q" or m.dialect.cycles.dwell}
     for letter, meaning in needed.items():
         if letter not in words:
             named = axis if letter == DEPTH else letter
@@ -242,10 +234,10 @@ def measure(sticky: Sticky, normal: int, m: State, w: Words) -> Hole:
     return Hole(clear, top, bottom, dwell, bite, m.machine.options.peck_retract / m.unit)
 
 
-def repeats_of(rules: Rules, w: Words) -> int:
+def repeats_of(m: State, w: Words) -> int:
     """The L word (AMB-CYC-5). Raises Refusal."""
     repeats = whole(w, "l") if "l" in w else 1
-    least = 0 if rules.none else 1
+    least = 0 if m.dialect.cycles.none else 1
     if not least <= repeats <= MOST:
         raise out_of_range(w, "l", f"how often, from {least}")
     return repeats
@@ -322,13 +314,13 @@ CYCLES = (
 )
 
 
-def row(cycle: Cycle, rules: Rules) -> Code:
+def row(cycle: Cycle) -> Code:
     """The code of a cycle."""
     handler = conversation if cycle.steps is bore_manual_out else run
     return Code(
-        cycle.name, cycle.title, partial(handler, cycle, rules), Group.MOTION, Order.MOTION,
+        cycle.name, cycle.title, partial(handler, cycle), Group.MOTION, Order.MOTION,
         takes="rl" + cycle.takes, axes=True, needs_axes=True, modal=True, cycle=True,
     )  # fmt: skip
 
 
-CODES = tuple(row(cycle, Rules()) for cycle in CYCLES)
+CODES = tuple(row(cycle) for cycle in CYCLES)
