@@ -20,7 +20,7 @@ from aircut.canon.toolpath import Extents
 from aircut.diagnostics import Diagnostic, Severity
 from aircut.interpreter.rotary import displayed
 from aircut.interpreter.running import Limits, Run, Settings
-from aircut.machine import Machine, Tool, built_in
+from aircut.machine import Machine, Tool
 from aircut.machine import load as load_machine
 from aircut.source import Source
 
@@ -203,7 +203,7 @@ class Program:
         """
         if isinstance(machine, str | Path):
             machine = load_machine(Path(machine))
-        made = machine or built_in(self.dialect.axes)
+        made = machine or dialects.machine(self.dialect)
         return self.dialect.interpreter(self.source, self.dialect, made, Settings(**settings))
 
     def check(

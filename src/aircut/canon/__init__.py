@@ -2,7 +2,7 @@
 
 from aircut.canon.commands import COMMANDS, Command
 from aircut.canon.record import CHUNK, Chunk, Event, Recorder, Recording
-from aircut.canon.toolpath import BY_HAND, COLUMNS, EXACT_PATH, EXACT_STOP, INVERSE_TIME, PART, ROW, TIP, Kind, Toolpath
+from aircut.canon.toolpath import BY_HAND, COLUMNS, EXACT_PATH, EXACT_STOP, INVERSE_TIME, PART, ROW, TIP, TOLD, Kind, Toolpath
 
 __all__ = [
     "BY_HAND",
@@ -15,6 +15,7 @@ __all__ = [
     "PART",
     "ROW",
     "TIP",
+    "TOLD",
     "Chunk",
     "Command",
     "Event",

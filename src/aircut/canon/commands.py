@@ -23,6 +23,7 @@ class Command(NamedTuple):
     fields: tuple[str, ...] = ()  # names of its values
     listed: bool = True  # in the canonical listing; False: aircut's own, for other faces
     scale: Callable[[tuple[Any, ...], float], tuple[Any, ...]] | None = None  # values, mm per program unit
+    bare: bool = False  # a line of its own without number and columns
 
 
 SIX = ("x", "y", "z", "a", "b", "c")
@@ -42,6 +43,15 @@ def command(name: str, form: str = "", meaning: str = "", fields: str = "", scal
 def own(name: str, meaning: str, fields: str) -> Command:
     """A command of aircut's own: not in the listing."""
     return Command(name, "", meaning, tuple(fields.split()), False)
+
+
+INCH = 25.4  # mm
+SLOT_FORM = "%d, %d, %.4f %.4f %.4f %.4f %.4f %.4f %.4f %.4f %.4f, %.4f, %.4f, %d"
+
+
+def in_inches(values: tuple[Any, ...], unit: float) -> tuple[Any, ...]:
+    """A tool table entry in the units of an inch machine, whatever the program's."""
+    return tuple(v / INCH if i in (2, 3, 4, 8, 9, 10) else v for i, v in enumerate(values))
 
 
 COMMANDS = {
@@ -128,6 +138,38 @@ COMMANDS = {
         command("SET_MOTION_OUTPUT_BIT", "%d", "output on", "output"),
         command("CLEAR_MOTION_OUTPUT_BIT", "%d", "output off", "output"),
         command("SET_AUX_OUTPUT_VALUE", "%d,%f", "analog output, percent", "output value"),
+        command("NURBS_FEED", "%d, ...", "a spline of this many control points; its moves follow", "points"),
+        command("RIGID_TAP", "%.4f, %.4f, %.4f", "tap to this point and back", "x y z", lengths(0, 1, 2)),
+        command(
+            "START_SPEED_FEED_SYNC",
+            "%f,%d",
+            "feed follows the spindle: length a revolution",
+            "pitch velocity",
+            lengths(0),
+        ),
+        command("STOP_SPEED_FEED_SYNCH"),
+        command("ORIENT_SPINDLE", "%d, %.4f, %d", "turn the spindle to degrees", "spindle angle mode"),
+        command("WAIT_ORIENT_COMPLETE", "%.4f", "wait for it, seconds", "spindle seconds", lambda v, unit: v[1:]),
+        command("RELOAD_TOOLDATA"),
+        command(
+            "STORE_TOOL",
+            SLOT_FORM,
+            "as SET_TOOL_TABLE_ENTRY, told in inches",
+            "slot tool x y z a b c u v w front back orientation",
+            in_inches,
+        ),
+        command("ENABLE_ADAPTIVE_FEED"),
+        command("DISABLE_ADAPTIVE_FEED"),
+        command("ENABLE_FEED_HOLD"),
+        command("DISABLE_FEED_HOLD"),
+        command("SET_AUX_OUTPUT_BIT", "%d", "output on, not waiting for the motion", "output"),
+        command("CLEAR_AUX_OUTPUT_BIT", "%d", "output off, not waiting for the motion", "output"),
+        command("SET_MOTION_OUTPUT_VALUE", "%d,%f", "analog output with the motion", "output value"),
+        command("LOG", '"%s"', "a line for the log file", "text"),
+        command("LOGOPEN", '"%s"', "open a log file anew", "name"),
+        command("LOGAPPEND", '"%s"', "open a log file to add to it", "name"),
+        command("LOGCLOSE"),
+        Command("PRINT", "%s", "a line for the operator's console", ("text",), bare=True),
         own("WAIT_INPUT", "wait for an input (M66, M67): L word, seconds (-1: without limit)", "input mode timeout"),
         own("PLC_CALL", "G100 and its arguments", "arguments"),
         own("INTERPOLATED_AXES", "G101: axes by bits", "mask"),
@@ -145,4 +187,8 @@ COMMANDS = {
 }
 
 #: Written under another name than their own, because two forms share one verb.
-WRITTEN = {"SET_MOTION_CONTROL_BLEND": "SET_MOTION_CONTROL_MODE"}
+WRITTEN = {
+    "SET_MOTION_CONTROL_BLEND": "SET_MOTION_CONTROL_MODE",
+    "WAIT_ORIENT_COMPLETE": "SPINDLE.0.WAIT_ORIENT_COMPLETE",
+    "STORE_TOOL": "SET_TOOL_TABLE_ENTRY",
+}

@@ -37,6 +37,7 @@ BY_HAND = 8  # the operator moves the machine there (G88): not in the listing
 
 TIP = 16  # under tool center point control: the feed is that of the tip
 PART = 32  # a part of a programmed move that others follow: the listing has the last one alone
+TOLD = 64  # told by the command before it (a spline, tapping): not a line of the listing
 
 
 class Column(NamedTuple):
@@ -59,7 +60,7 @@ COLUMNS = (
     Column("file", "H", "index into Recording.files"),
     Column("kind", "B", "Kind: 0 traverse, 1 feed, 2 arc, 3 probe"),
     Column("plane", "B", "arc plane: 0 XY (u X, v Y), 1 ZX (u Z, v X), 2 YZ (u Y, v Z)"),
-    Column("flags", "H", "EXACT_STOP 1, EXACT_PATH 2, INVERSE_TIME 4, BY_HAND 8, TIP 16, PART 32"),
+    Column("flags", "H", "EXACT_STOP 1, EXACT_PATH 2, INVERSE_TIME 4, BY_HAND 8, TIP 16, PART 32, TOLD 64"),
 )
 ROW = struct.Struct("<" + "".join(column.code for column in COLUMNS))
 AXES = "xyzabc"

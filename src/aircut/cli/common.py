@@ -15,12 +15,21 @@ from aircut import dialects
 from aircut.diagnostics import Diagnostic, Severity, Span
 from aircut.diagnostics import faults as F
 from aircut.interpreter.running import Limits, Run, Settings
-from aircut.machine import Machine, MachineError, built_in, load, memory
+from aircut.interpreter.table import Dialect
+from aircut.machine import Machine, MachineError, load, memory
 from aircut.rules.policy import Policy, RulesError
 from aircut.source import Source
 
 PATIENCE = 1.0  # seconds of work before progress is shown
 COLORS = {Severity.ERROR: "red", Severity.WARNING: "yellow"}
+
+
+def dialect(options: dict[str, Any]) -> Dialect:
+    """The dialect that the options name. Raises click.UsageError."""
+    try:
+        return dialects.load(options["dialect"])
+    except ValueError as error:
+        raise click.UsageError(str(error)) from None
 
 
 def machine(options: dict[str, Any]) -> Machine:
@@ -31,7 +40,7 @@ def machine(options: dict[str, Any]) -> Machine:
                 raise click.UsageError("--axes is for the built-in machine; a folder's machine.toml names its own")
             made = load(options["folder"])
         else:
-            made = built_in(options["axes"] or "XYZ")
+            made = dialects.machine(dialect(options), options["axes"] or "")
         made.macros = (*options["macros"], *made.macros)
         made.key = options["key"]
         if options["tools"]:
@@ -62,15 +71,12 @@ def interpreter(
     file: Path, options: dict[str, Any], made: Machine, keep_going: bool, keeps_moves: bool
 ) -> Run | Diagnostic:
     """An interpreter of the file, or why there is none. Raises click.UsageError for an unknown dialect."""
-    try:
-        dialect = dialects.load(options["dialect"])
-    except ValueError as error:
-        raise click.UsageError(str(error)) from None
+    language = dialect(options)
     try:
         source = Source.load(file)
     except OSError as error:
         return F.CANNOT_READ.at(str(file), Span(), reason=error.strerror or str(error))
-    return dialect.interpreter(source, dialect, made, settings(options, keep_going, keeps_moves))
+    return language.interpreter(source, language, made, settings(options, keep_going, keeps_moves))
 
 
 def policy(file: Path, options: dict[str, Any]) -> Policy:

@@ -279,4 +279,18 @@ BAD_DIRECTIVE = Fault(
     "bad-directive", "this comment switches nothing: {problem}", "write (aircut: ignore RULE), off or on", WARNING
 )
 
+# --- LinuxCNC's language
+
+UNDER_COMPENSATION = Fault(
+    "under-compensation", "{what} is not possible while cutter radius compensation is on", "program G40 before"
+)
+NO_TOOL = Fault("no-tool", "tool {tool} is not in the tool table")
+TOO_MANY_M = Fault("too-many-m", "more than four M words in one block")
+WRONG_STATE = Fault("wrong-state", "{what}", "{hint}", why="The code is fine, but not as the machine stands now.")
+O_WORD = Fault("o-word", "{what}", "{hint}", why="A word of program flow that does not fit where it stands.")
+ABORTED = Fault("aborted", "{text}", why="The program itself says that it cannot go on: (ABORT,text).")
+END_MISSING = Fault(
+    "end-missing", "the file ends without M2, M30 or a closing %", "the last line of a program is M2, M30 or %"
+)
+
 FAULTS: dict[str, Fault] = {fault.code: fault for fault in list(globals().values()) if isinstance(fault, Fault)}

@@ -9,15 +9,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
+from math import cos, radians, sin
 
-from aircut.canon import BY_HAND, COMMANDS, PART, ROW, TIP, Chunk, Event, Kind
+from aircut.canon import BY_HAND, COMMANDS, PART, ROW, TIP, TOLD, Chunk, Event, Kind
 from aircut.canon.commands import WRITTEN
 from aircut.geometry.arcs import PLANE_AXES
 from aircut.geometry.kinematics import Setup, forward
 
 INCH = 25.4  # mm
 NO_NUMBER = "N..... "
-LABEL = re.compile(rb"^[ \t/]*[nN][ \t]*(\d+)")
+LABEL = re.compile(rb"^[ \t/]*[nN](\d*)")
 STRAIGHT = {
     Kind.TRAVERSE: "STRAIGHT_TRAVERSE",
     Kind.FEED: "STRAIGHT_FEED",
@@ -43,12 +44,14 @@ class Listing:
         self.setup = Setup(0)
         self.work = [0.0] * 6
         self.shift = [0.0] * 6
+        self.rotation = 0.0  # radians
         self.labels: dict[tuple[int, int], str] = {}
         self.track: Mapping[str, Callable[[Event], None]] = {
             "USE_LENGTH_UNITS": self.set_units,
             "SET_G5X_OFFSET": self.set_work,
             "SET_G92_OFFSET": self.set_shift,
             "TOOL_CENTER_POINT": self.set_setup,
+            "SET_XY_ROTATION": self.set_rotation,
         }
 
     def set_units(self, event: Event) -> None:
@@ -68,6 +71,15 @@ class Listing:
         axes = (row[0] + self.setup.tool_x, row[1] + self.setup.tool_y, row[2] + self.setup.tool_z)
         return (*forward(self.setup, axes, row[3:6]), *row[3:])
 
+    def set_rotation(self, event: Event) -> None:
+        self.rotation = radians(event.values[0])
+
+    def turned(self, u: float, v: float) -> tuple[float, float]:
+        """Back from the rotation of the work system about its origin."""
+        u, v = u - self.work[0], v - self.work[1]
+        c, s = cos(self.rotation), sin(self.rotation)
+        return u * c + v * s + self.work[0], v * c - u * s + self.work[1]
+
     def write(self, chunk: Chunk) -> Iterator[str]:
         """The lines of a chunk, each with its line end."""
         events = iter(chunk.events)
@@ -77,11 +89,20 @@ class Listing:
                 yield from self.event(event)
                 event = next(events, None)
             flags = int(row[15])
-            if not flags & (BY_HAND | PART):
+            if not flags & (BY_HAND | PART | TOLD):
                 yield self.move(self.tip(row) if flags & TIP else row)
         while event is not None:
             yield from self.event(event)
             event = next(events, None)
+
+    def unrotated(self, row: tuple[float, ...]) -> tuple[float, ...]:
+        values = list(row)
+        values[0], values[1] = self.turned(row[0], row[1])
+        if row[13] == Kind.ARC:
+            u, v, _ = PLANE_AXES[int(row[14])]
+            if (u, v) == (0, 1):
+                values[6], values[7] = self.turned(row[6], row[7])
+        return tuple(values)
 
     def line(self, file: int, line: int, text: str) -> str:
         self.count += 1
@@ -100,11 +121,16 @@ class Listing:
         if not row.listed:
             return
         values = row.scale(event.values, self.unit) if row.scale else event.values
+        if row.bare:
+            yield row.form % values + "\n"
+            return
         text = f"{WRITTEN.get(event.name, event.name)}({row.form % values})"
         yield self.line(event.file, event.line, text)
 
     def move(self, row: tuple[float, ...]) -> str:
         unit = self.unit
+        if self.rotation:
+            row = self.unrotated(row)
         offset = [w + s for w, s in zip(self.work, self.shift, strict=True)]
         place = [(row[i] - offset[i]) / unit for i in range(3)] + [row[i] - offset[i] for i in (3, 4, 5)]
         kind, plane = int(row[13]), int(row[14])

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from aircut.interpreter.requests import Request
     from aircut.interpreter.running import Run
     from aircut.interpreter.state import State
+    from aircut.machine.tools import Tool
 
 Words = Mapping[str, Any]  # letter -> value, of one block
 #: What carries a code out: a function, or a generator of requests where it asks the world.
@@ -52,11 +53,15 @@ class Group(IntFlag):
     TOOL_MACRO = auto()
     CALL = auto()
     RETURN = auto()
+    SPINDLE_MODE = auto()
+    DIAMETER = auto()
+    USER = auto()
 
 
 class Order(IntEnum):
     """Places in the order of execution of a block. Source: 000 section 1.7, decision AMB-EXE-1."""
 
+    SPINDLE_MODE = auto()
     FEED_MODE = auto()
     FEED = auto()
     SPEED = auto()
@@ -66,12 +71,14 @@ class Order(IntEnum):
     SPINDLE = auto()
     COOLANT = auto()
     OVERRIDE = auto()
+    USER = auto()
     MACRO_START = auto()
     MESSAGE = auto()
     MACRO_END = auto()
     DWELL = auto()
     PLANE = auto()
     UNITS = auto()
+    DIAMETER = auto()
     CUTTER = auto()
     TOOL_LENGTH = auto()
     SYSTEM = auto()
@@ -108,6 +115,7 @@ class Code(NamedTuple):
     alone: str = ""  # the code that the axis words beside it mean
     cycle: bool = False  # a canned cycle: what State.cycle holds stays in force
     sole: bool = False  # the only G or M code of its block; every letter is its argument
+    counts: str = ""  # letters of words that must be whole numbers
     text: bool = False  # its P may be a string
     supported: bool = True  # False: run raises not-supported-yet
 
@@ -193,3 +201,4 @@ class Dialect(NamedTuple):
     cycles: CycleRules = CycleRules()
     polar: PolarRules = PolarRules()
     axes: str = "XYZ"  # of the machine that serves when none is given
+    tools: tuple[Tool, ...] = ()  # that this machine has, if not the built-in ones

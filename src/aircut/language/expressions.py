@@ -10,6 +10,7 @@ Grammar:
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from aircut.diagnostics import Refusal
@@ -100,7 +101,14 @@ def illegal_character(character: str, where: Where, hint: str = "") -> Refusal:
 
 
 class Parser:
-    """Reads values and expressions from a clean line, from `at` on."""
+    """Reads values and expressions from a clean line, from `at` on.
+
+    operator, operators, functions: the language's operators (a pattern that finds one) and functions by name.
+    """
+
+    operator: re.Pattern[str] = OPERATOR
+    operators: Mapping[str, Operator] = OPERATOR_ROWS
+    functions: Mapping[str, Function] = FUNCTION_ROWS
 
     def __init__(self, code: str, shape: bool = False) -> None:
         self.code = code
@@ -173,7 +181,7 @@ class Parser:
         if character == "[":
             return self.brackets()
         if match := FUNCTION.match(self.code, start):
-            return self.application(FUNCTION_ROWS[match[0]])
+            return self.application(self.functions[match[0]])
         word = WORD.match(self.code, start)
         if word and self.code[word.end() : word.end() + 1] == "[":
             raise Refusal(F.UNKNOWN_FUNCTION, where=word.span(), name=word[0].upper())
@@ -226,10 +234,10 @@ class Parser:
         start = self.at
         node = self.value()
         for _ in range(LONGEST):
-            match = OPERATOR.match(self.code, self.at)
-            if match is None or OPERATOR_ROWS[match[0]].level < level:
+            match = self.operator.match(self.code, self.at)
+            if match is None or self.operators[match[0]].level < level:
                 return node
-            operator = OPERATOR_ROWS[match[0]]
+            operator = self.operators[match[0]]
             self.at = match.end()
             right = self.sum(operator.level + 1)
             node = Binary(operator, node, right, (start, self.at))

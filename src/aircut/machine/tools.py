@@ -23,6 +23,16 @@ class Tool(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     p1: float = 0.0
     p2: float = 0.0
     p3: float = 0.0
+    a: float = 0.0  # offsets of the other axes, degrees and mm
+    b: float = 0.0
+    c: float = 0.0
+    u: float = 0.0
+    v: float = 0.0
+    w: float = 0.0
+
+    def offsets(self) -> list[float]:
+        """Offsets along X Y Z A B C U V W, mm and degrees."""
+        return [self.x, self.y, self.z, self.a, self.b, self.c, self.u, self.v, self.w]
 
 
 class Library(msgspec.Struct, forbid_unknown_fields=True):

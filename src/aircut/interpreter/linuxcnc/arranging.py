@@ -1,0 +1,139 @@
+"""The checks of a block that need its words alone, driven by the rows, and the order of its codes.
+
+Source: 001 Repeated items, Modal groups, Order of execution; the canonical listing, sections 6, 7 and 15.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from aircut.diagnostics import Refusal
+from aircut.diagnostics import faults as F
+from aircut.interpreter.state import EQUAL
+from aircut.interpreter.table import Code, Dialect, Group
+
+AXIS_WORDS = frozenset("xyzabcuvw@^")
+ITEMS = "fst"  # words that are rows of their own
+MOST_M = 4
+WHOLE = {"m": "a whole number", "t": "a whole number", "h": "a whole number", "l": "a whole number"}
+LOWEST = {"f": 0.0, "s": 0.0, "g": 0.0, "m": 0.0, "l": 0.0, "h": -1.0, "t": 0.0}
+TWICE = "@^"  # of these the last counts
+TURNS = 0.001  # what a P that counts turns or directions may differ from a whole number
+FREE = -1.0  # a P or Q up to this may be given again
+
+
+def check_values(codes: Sequence[Code], words: Mapping[str, float]) -> None:
+    """The values that are a matter of form. Raises Refusal."""
+    for row in codes:
+        for letter in row.counts:
+            if letter in words:
+                value = words[letter]
+                if abs(value - round(value) if abs(value) < 1e9 else 1.0) > TURNS:
+                    raise Refusal(F.NOT_INTEGER, letter, word=letter.upper(), value=value)
+                if row.wakes and round(value) < 1:
+                    raise Refusal(F.BAD_VALUE, letter, word=letter.upper(), value=value, wanted="1 at least")
+
+
+class Steps(NamedTuple):
+    """What a block does, in order."""
+
+    codes: tuple[Code, ...]
+    motion: Code | None  # the one that the axis words mean
+
+
+def g_name(value: float) -> str:
+    """Normalized name of a G code. Raises Refusal."""
+    tenths = int(value * 10.0) if abs(value) < 1e6 else 10**6
+    rest = value * 10.0 - tenths
+    if rest > 0.999:
+        tenths += 1
+    elif rest > 0.001:
+        raise Refusal(F.UNKNOWN_CODE, "g", code=f"G{value:g}")
+    return f"g{tenths // 10}.{tenths % 10}" if tenths % 10 else f"g{tenths // 10}"
+
+
+def whole(letter: str, value: float) -> int:
+    """A word that must be a whole number. Raises Refusal."""
+    nearest = round(value) if abs(value) < 1e9 else 0
+    if abs(value - nearest) > EQUAL:
+        raise Refusal(F.NOT_INTEGER, letter, word=letter.upper(), value=value)
+    return nearest
+
+
+def gather(letters: Sequence[str], values: Sequence[float], dialect: Dialect) -> tuple[list[str], dict[str, float]]:
+    """Names of the codes of a block, and its other words. Raises Refusal."""
+    names: list[str] = []
+    words: dict[str, float] = {}
+    count = 0
+    for letter, value in zip(letters, values, strict=False):  # values of settings follow
+        if letter in WHOLE:
+            value = whole(letter, value)
+        if value < LOWEST.get(letter, value):
+            wanted = f"not below {LOWEST[letter]:g}"
+            raise Refusal(F.BAD_VALUE, letter, word=letter.upper(), value=value, wanted=wanted)
+        if letter == "g":
+            names.append(g_name(value))
+        elif letter == "m":
+            names.append(f"m{value:g}")
+            count += 1
+        else:
+            if letter in words and letter not in TWICE and not (letter in "pq" and words[letter] <= FREE):
+                raise Refusal(F.REPEATED_WORD, letter, word=letter.upper())
+            words[letter] = value
+    if count > MOST_M:
+        raise Refusal(F.TOO_MANY_M, "m")
+    return names, words
+
+
+def find(name: str, dialect: Dialect) -> Code:
+    """The row of a code. Raises Refusal."""
+    row = dialect.codes.get(name)
+    if row is None:
+        raise Refusal(F.UNKNOWN_CODE, name[0], code=name.upper())
+    return row
+
+
+def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dialect: Dialect) -> Steps:
+    """The steps of a block with these codes and words, under a motion mode. Raises Refusal."""
+    rows = [find(name, dialect) for name in names]
+    for i, row in enumerate(rows):
+        for other in rows[:i]:
+            if row.group & other.group and not (row.weak != other.weak):
+                raise Refusal(F.MODAL_CONFLICT, row.name[0].lower(), first=other.name, second=row.name)
+    alone = next((row for row in rows if row.sole), None)
+    if alone is not None and (len(rows) > 1 or not set(letters) <= set(alone.takes)):
+        raise Refusal(F.SOLE_CODE, "m", code=alone.name, other="anything else")
+    axes = [letter for letter in letters if letter in AXIS_WORDS]
+    cancels = [row for row in rows if row.weak]
+    rows = [row for row in rows if not (row.weak and any(o.group & row.group for o in rows if not o.weak))]
+    motion = next((row for row in rows if row.group & Group.MOTION and not row.weak), None)
+    takers = [row for row in rows if row.axes and row is not motion]
+    if motion is not None and takers:
+        if axes or not motion.fits:
+            raise Refusal(F.AXIS_CONFLICT, "g", first=takers[0].name, second=motion.name)
+    if axes and not takers and motion is None:
+        if cancels:
+            raise Refusal(F.G80_AXES, axes[0])
+        if modal.weak:
+            raise Refusal(F.NO_MOTION_MODE, axes[0])
+        motion = modal
+        rows.append(modal)
+    elif motion is None and not takers and any(letter in modal.wakes for letter in letters):
+        used = {letter for row in rows for letter in row.takes}
+        if any(letter in modal.wakes and letter not in used for letter in letters):
+            motion = modal
+            rows.append(modal)
+    for row in rows:
+        if row.needs_axes and not axes:
+            raise Refusal(F.MISSING_AXES, code=row.name)
+        for letter in row.needs:
+            if letter not in letters:
+                raise Refusal(F.MISSING_WORD, code=row.name, word=letter.upper(), meaning="")
+    items = [dialect.items[letter] for letter in letters if letter in ITEMS]
+    takes = {letter for row in (*rows, *items) for letter in row.takes}
+    for letter in letters:
+        if letter not in AXIS_WORDS and letter not in ITEMS and letter not in takes:
+            raise Refusal(F.UNUSED_WORD, letter, word=letter.upper())
+    order = sorted([*rows, *items], key=lambda row: row.order)
+    return Steps(tuple(order), motion)

@@ -1,0 +1,240 @@
+"""Blocks of LinuxCNC's language, parsed and compiled.
+
+    line     = ["/"] [ "n" number ] ( o-line | { word | setting | comment } )
+    word     = letter value
+    setting  = "#" ( value | "<" name ">" ) "=" value
+    o-line   = "o" ( value | "<" name ">" ) keyword rest
+
+Values are computed before anything of the line is done, so a line becomes one
+Python function of the state, as in `interpreter.compiling`.
+Source: 001 Format of a line; the canonical listing, sections 7 and 9.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from aircut.diagnostics import Refusal
+from aircut.diagnostics import faults as F
+from aircut.interpreter import compiling
+from aircut.interpreter.linuxcnc import arithmetic
+from aircut.language.expressions import (
+    Application,
+    Expression,
+    Name,
+    Number,
+    Parser,
+    Text,
+    Variable,
+)
+from aircut.language.text import COMMENT
+
+LETTERS = frozenset("abcdefghijklmpqrstuvwxyz@^$")
+KEYWORD = re.compile("endsub|sub|call|return|elseif|else|endif|if|endwhile|while|do|endrepeat|repeat|break|continue")
+LABEL = re.compile(r"/?(?:n(\d+)(?:\.\d*)?)?")
+START = re.compile(r"/?(?:n\d+\.?\d*)?\x01*o")
+ANY_NAME = re.compile(r"[^>]*")
+DIRECT = 5399  # numbered parameters up to this one are read as they are stored
+ENVIRONMENT = {
+    **compiling.ENVIRONMENT,
+    **{operator.run.__name__: operator.run for operator in arithmetic.OPERATORS},
+    **{f"f_{function.name}": function.run for function in arithmetic.FUNCTIONS},
+}
+
+
+class ValueParser(Parser):
+    """The house's parser with this language's operators, functions and names."""
+
+    operator = arithmetic.OPERATOR
+    operators = arithmetic.OPERATOR_ROWS
+    functions = arithmetic.FUNCTION_ROWS
+
+    def variable(self) -> Variable | Name:
+        if self.code.startswith("#<", self.at):
+            start = self.at
+            self.at += 2
+            name = self.name()
+            return Name((name,), (start, self.at))
+        return super().variable()
+
+    def name(self) -> str:
+        """What stands up to >, which is passed over too."""
+        match = ANY_NAME.match(self.code, self.at)
+        assert match is not None
+        self.at = match.end()
+        if not self.take(">"):
+            raise self.expected("a name and >")
+        return match[0].replace(COMMENT, "")
+
+    def application(self, function: Any) -> Application:
+        if function.arguments != "name":
+            return super().application(function)
+        start = self.at
+        self.at += len(function.name) + 1
+        argument = self.variable() if self.code.startswith("#", self.at) else None
+        if argument is None or not self.take("]"):
+            raise Refusal(F.BAD_EXISTS, where=(start, self.at))
+        return Application(function, (argument,), (start, self.at))
+
+
+class Writer(compiling.Writer):
+    """Writes a block's Python function."""
+
+    def variable(self, node: Variable) -> tuple[str, int]:
+        if isinstance(node.number, Number) and node.number.value == int(node.number.value):
+            number = int(node.number.value)
+            if 1 <= number <= DIRECT:
+                return f"V[{number}]", 0
+        text, depth = self.checked(node.number)
+        return self.step(f"m.read({text})", depth + 1)
+
+    def name(self, node: Name) -> str:
+        return repr(node.parts[0])
+
+    def expression(self, node: Expression | Text) -> tuple[str, int]:
+        if isinstance(node, Application) and node.function.arguments == "name":
+            argument = node.arguments[0]
+            if isinstance(argument, Name):
+                return f"f_exists(m.exists({self.name(argument)}))", 2
+            assert isinstance(argument, Variable)
+            text, _ = self.checked(argument.number)
+            return f"f_exists(m.has_number({text}))", 2
+        return super().expression(node)
+
+
+def build(writer: Writer, result: str) -> Callable[..., Any]:
+    lines = ["def computed(m, k):"]
+    if "V[" in result or any("V[" in step for step in writer.steps):
+        lines.append("    V = m.numbered")
+    lines += writer.steps
+    lines.append(f"    return {result}")
+    space = dict(ENVIRONMENT)
+    exec(compile("\n".join(lines), "<block>", "exec"), space)
+    computed: Callable[..., Any] = space["computed"]
+    return computed
+
+
+def compiled(*nodes: Expression) -> Callable[..., tuple[float, ...]]:
+    """The function (state, literals) -> values of some expressions."""
+    writer = Writer(None)  # type: ignore[arg-type]  # this language's variables need no table
+    return build(writer, compiling.tuple_text([writer.write(node) for node in nodes]))
+
+
+class Block(NamedTuple):
+    """A compiled line of words and settings."""
+
+    letters: tuple[str, ...]
+    values: Callable[..., tuple[float, ...]]  # of the words, then of the settings, then of computed targets
+    #: Of the settings: a number, a name, or None where it is computed; then the place of that among the values.
+    targets: tuple[tuple[int | str | None, int], ...]
+    number: bool  # it has an N
+
+
+class OLine(NamedTuple):
+    """An O-word: its label and keyword, and what follows, not yet read."""
+
+    label: str | Callable[..., tuple[float, ...]]  # a name, or a function of the number
+    keyword: str  # "" for a bare number
+    rest: str
+
+
+def parse_o(code: str) -> OLine | None:
+    """The O-word of a clean line, if it is one. Raises Refusal."""
+    start = START.match(code)
+    if start is None:
+        return None
+    parser = ValueParser(code)
+    parser.at = start.end()
+    label: str | Callable[..., tuple[float, ...]]
+    if parser.take("<"):
+        label = parser.name()
+    else:
+        node = parser.value()
+        if isinstance(node, Number) and node.value == int(node.value):
+            label = str(int(node.value))
+        else:
+            label = compiled(node)
+    keyword = KEYWORD.match(code, parser.at)
+    if keyword is None:
+        if code[parser.at :].strip(COMMENT):
+            raise parser.expected("an O-word such as CALL or IF")
+        return OLine(label, "", "")
+    return OLine(label, keyword[0], code[keyword.end() :].replace(COMMENT, ""))
+
+
+def arguments(rest: str, least: int, most: int) -> Callable[..., tuple[float, ...]]:
+    """The function of the values in brackets behind a keyword. Raises Refusal."""
+    parser = ValueParser(rest)
+    nodes = []
+    while len(nodes) < most and rest.startswith("[", parser.at):
+        nodes.append(parser.brackets())
+    if len(nodes) < least:
+        raise parser.expected("[expression]")
+    if parser.at < len(rest):
+        raise Refusal(F.MISPLACED_WORDS, what="an O-word")
+    return compiled(*nodes)
+
+
+def check_number(code: str) -> int:
+    """Pass over / and N; the place behind them. Raises Refusal."""
+    at = 1 if code.startswith("/") else 0
+    if code.startswith("n", at):
+        match = LABEL.match(code)
+        if match is None or match.end() <= at:
+            raise Refusal(F.BAD_NUMBER, where=(at, at + 1), text="the line number")
+        at = match.end()
+        if code.startswith(".", at):
+            raise Refusal(F.BAD_NUMBER, where=(at, at + 1), text="the line number")
+    return at
+
+
+def parse(code: str, shape: bool = False) -> Block:
+    """A clean line of words and settings, compiled. shape: numbers are written as `?`. Raises Refusal."""
+    parser = ValueParser(code, shape)
+    parser.at = check_number(code)
+    number = "n" in code[: parser.at]
+    letters: list[str] = []
+    words: list[Expression] = []
+    targets: list[tuple[int | str | None, int]] = []
+    settings: list[Expression] = []
+    places: list[Expression] = []
+    new: list[str] = []  # names that exist from here on
+    while parser.at < len(code):
+        start = parser.at
+        character = code[start]
+        if character == COMMENT:
+            parser.at += 1
+        elif character in LETTERS:
+            parser.at += 1
+            letters.append(character)
+            words.append(parser.value())
+        elif character == "#":
+            target = parser.variable()
+            if not parser.take("="):
+                raise parser.expected("=")
+            settings.append(parser.value())
+            place = -1
+            if isinstance(target, Name):
+                name = str(target.parts[0])
+                targets.append((name, place))
+                if code.find(f"#<{name}>") == start:
+                    new.append(name)
+            elif isinstance(target.number, Number) and target.number.value == int(target.number.value):
+                targets.append((int(target.number.value), place))
+            else:
+                targets.append((None, len(places)))
+                places.append(target.number)
+        else:
+            raise parser.expected("a word or a setting")
+    writer = Writer(None)  # type: ignore[arg-type]  # this language's variables need no table
+    writer.steps += [f"    m.create({name!r})" for name in new]
+    nodes = [writer.write(node) for node in (*words, *settings, *places)]
+    first = len(words) + len(settings)
+    return Block(
+        tuple(letters),
+        build(writer, compiling.tuple_text(nodes)),
+        tuple((target, first + place) for target, place in targets),
+        number,
+    )

@@ -1,0 +1,76 @@
+"""Comments of LinuxCNC's language, and those that do something.
+
+Sources: 001 Comments to Comment parameters; the canonical listing, section 4.
+"""
+
+from __future__ import annotations
+
+import re
+
+from aircut.diagnostics import Refusal
+from aircut.diagnostics import faults as F
+from aircut.interpreter.linuxcnc.state import DEBUGGING, LAST, State
+
+ACTIVE = re.compile(r"[ \t]*(msg|debug|print|logopen|logappend|logclose|log|abort)(,|$)", re.IGNORECASE)
+PIECES = re.compile(r"#(\d+)|#<([^>]*)>|%(d)|%(f)|%\.(\d)f|%\.|(.)", re.DOTALL)
+UNKNOWN = "######"
+NEAR_ZERO = 1e-4
+BLANKS = str.maketrans("", "", " \t")
+
+
+def say(m: State, comment: str) -> None:
+    """Carry out the last comment of a block. Raises Refusal."""
+    active = ACTIVE.match(comment)
+    kind = active[1].lower() if active else ""
+    if active is None or (kind == "logclose") == bool(active[2]):
+        text = comment.lstrip(" \t")
+        if comment:
+            m.out.event("COMMENT", text)
+        return
+    text = comment[active.end() :]
+    if kind == "msg":
+        m.out.event("MESSAGE", text, 0, "text")
+    elif kind == "debug":
+        if m.numbered[DEBUGGING] > 0.0:
+            m.out.event("MESSAGE", expanded(m, text), 0, "text")
+    elif kind == "print":
+        m.out.event("PRINT", expanded(m, text))
+    elif kind == "log":
+        m.out.event("LOG", expanded(m, text))
+    elif kind == "abort":
+        raise Refusal(F.ABORTED, text=expanded(m, text))
+    else:
+        m.out.event(kind.upper(), *([text] if active[2] else []))
+
+
+def expanded(m: State, text: str) -> str:
+    """The text with its parameters' values; %d, %f and %.nf set the decimals of those that follow."""
+    decimals = 6
+    parts: list[str] = []
+    for number, name, whole, four, digits, other in PIECES.findall(text):
+        if whole:
+            decimals = 0
+        elif four:
+            decimals = 4
+        elif digits:
+            decimals = int(digits)
+        elif other:
+            parts.append(other)
+        elif number or name:
+            value = value_of(m, number, name)
+            parts.append(UNKNOWN if value is None else f"{0.0 if abs(value) < NEAR_ZERO else value:.{decimals}f}")
+        else:
+            parts.append(".")  # a %. that is no format loses its %
+    return "".join(parts)
+
+
+def value_of(m: State, number: str, name: str) -> float | None:
+    """Value of a parameter in a text; None where there is none."""
+    if number:
+        index = int(number[:9])
+        return (m.read(float(index)) if index else 0.0) if index <= LAST else None
+    key = name.translate(BLANKS).lower()
+    try:
+        return m.read_name(key) if m.exists(key) else None
+    except Refusal:
+        return None

@@ -1,0 +1,358 @@
+"""The flow of LinuxCNC's programs: O-words, calls, M98 and M99.
+
+Flow is worked out as the program runs, as LinuxCNC does: a label is known from when it
+was met; lines that are passed over are not read but for their O-words.
+Sources: 001 (subroutine parameters); the canonical listing, section 9.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from aircut.diagnostics import Refusal
+from aircut.diagnostics import faults as F
+from aircut.interpreter.linuxcnc.arranging import whole
+from aircut.interpreter.linuxcnc.blocks import OLine, arguments
+from aircut.interpreter.linuxcnc.state import LOCALS
+
+if TYPE_CHECKING:
+    from aircut.interpreter.linuxcnc.interpreter import Interpreter, Text
+
+DEEPEST = 9  # calls in calls
+LOOPS = ("while", "do")
+BRANCHES = ("elseif", "else", "endif")
+
+
+@dataclass
+class Mark:
+    """A label that has been met."""
+
+    kind: str  # sub, o (a bare number), if, while, do, repeat
+    text: Text
+    line: int  # from 0
+    taken: bool = False  # a branch of the IF has run; the REPEAT is going on
+    left: int = 0  # passes of the REPEAT
+
+
+class Level(NamedTuple):
+    """A caller, waiting for its call to come back."""
+
+    text: Text
+    line: int  # to go on with
+    sub: str  # that the caller is in
+    locals: list[float] | None  # None: shared (M98)
+    scope: dict[str, float | None]
+    label: str  # of what was called
+    fanuc: bool
+    saved: Any  # what M70 saved for the caller
+    count: int  # passes still to do, with this one
+
+
+@dataclass
+class Search:
+    """Lines are passed over until this label."""
+
+    label: str
+    call: bool = False  # it is a subroutine that was called
+    fanuc: bool = False
+    where: tuple[Text, int] | None = None  # of the call
+    kinds: tuple[str, ...] = field(default=())
+
+
+def refuse(what: str, hint: str = "") -> Refusal:
+    return Refusal(F.O_WORD, what=what, hint=hint)
+
+
+class Flow:
+    """What leads from line to line. `run` is the interpreter."""
+
+    def __init__(self, run: Interpreter) -> None:
+        self.run = run
+        self.marks: dict[str, Mark] = {}
+        self.stack: list[Level] = []
+        self.search: Search | None = None
+        self.sub = ""  # that is being run
+        self.breaking = False
+        self.continuing = False
+
+    # --- labels
+
+    def name(self, line: OLine) -> str:
+        """The label as written, or its computed number. Raises Refusal."""
+        if isinstance(line.label, str):
+            return line.label
+        return str(whole("o", line.label(self.run.state, ())[0]))
+
+    def scoped(self, name: str) -> str:
+        return f"{self.sub}#{name}"
+
+    def mark(self, label: str, kind: str) -> Mark:
+        """Note that a label opens here. Raises Refusal where it opens elsewhere already."""
+        run = self.run
+        known = self.marks.get(label)
+        if known is not None and (known.text is not run.unit or known.line != run.line):
+            raise refuse(f"the label {label.split('#')[-1]} is in use by line {known.line + 1}")
+        mark = self.marks[label] = Mark(kind, run.unit, run.line)
+        return mark
+
+    # --- one O-word
+
+    def step(self, line: OLine) -> None:
+        """Carry out an O-word; sets the interpreter's next line. Raises Refusal."""
+        name = self.name(line)
+        if self.search is not None:
+            self.passed(line, name)
+            return
+        self.WORDS[line.keyword](self, line, name)
+
+    def passed(self, line: OLine, name: str) -> None:
+        """An O-word among lines that are passed over."""
+        search = self.search
+        assert search is not None
+        if search.call:
+            if name == search.label and line.keyword in ("", "sub"):
+                self.enter_found(line, name, search)
+            return
+        if line.keyword == "sub" and search.kinds == ("endsub",):
+            raise refuse("a subroutine inside a subroutine")
+        label = name if line.keyword == "endsub" else self.scoped(name)
+        if label != search.label or line.keyword not in search.kinds:
+            return
+        self.search = None
+        self.WORDS[line.keyword](self, line, name, True)
+
+    def values(self, line: OLine, least: int, most: int) -> tuple[float, ...]:
+        known = self.run.argument_cache.get(line)
+        if known is None:
+            known = self.run.argument_cache[line] = arguments(line.rest, least, most)
+        return known(self.run.state, ())
+
+    def nothing(self, line: OLine) -> None:
+        if line.rest:
+            raise Refusal(F.MISPLACED_WORDS, what=f"O … {line.keyword.upper()}")
+
+    def skip(self, label: str, *kinds: str) -> None:
+        self.search = Search(label, kinds=kinds)
+
+    # --- branches
+
+    def if_(self, line: OLine, name: str, sought: bool = False) -> None:
+        label = self.scoped(name)
+        (truth,) = self.values(line, 1, 1)
+        mark = self.mark(label, "if")
+        mark.taken = truth != 0.0
+        if not mark.taken:
+            self.skip(label, *BRANCHES)
+
+    def elseif(self, line: OLine, name: str, sought: bool = False) -> None:
+        """Its condition is computed even where a branch above has run."""
+        label = self.scoped(name)
+        mark = self.opened(label, ("if",), line)
+        (truth,) = self.values(line, 1, 1)
+        if not sought or mark.taken or truth == 0.0:
+            self.skip(label, *BRANCHES)
+            return
+        mark.taken = True
+
+    def else_(self, line: OLine, name: str, sought: bool = False) -> None:
+        self.nothing(line)
+        label = self.scoped(name)
+        mark = self.opened(label, ("if",), line)
+        if not sought or mark.taken:
+            self.skip(label, *BRANCHES)
+            return
+        mark.taken = True
+
+    def endif(self, line: OLine, name: str, sought: bool = False) -> None:
+        if not sought:
+            self.nothing(line)
+            self.opened(self.scoped(name), ("if",), line)
+
+    def opened(self, label: str, kinds: tuple[str, ...], line: OLine) -> Mark:
+        mark = self.marks.get(label)
+        if mark is None or mark.kind not in kinds:
+            raise refuse(f"{line.keyword.upper()} without its {' or '.join(kinds).upper()}")
+        return mark
+
+    # --- loops. A BREAK and a CONTINUE are remembered until the end of a loop that asks for them,
+    # which need not be the loop that they stood in: so LinuxCNC does it.
+
+    def while_(self, line: OLine, name: str, sought: bool = False) -> None:
+        label = self.scoped(name)
+        (truth,) = self.values(line, 1, 1)
+        known = self.marks.get(label)
+        if known is not None and known.kind == "do":
+            if self.breaking:
+                self.breaking = False
+            elif truth != 0.0:
+                self.run.jump(known.text, known.line + 1)
+            return
+        self.mark(label, "while")
+        if truth == 0.0:
+            self.skip(label, "endwhile")
+
+    def endwhile(self, line: OLine, name: str, sought: bool = False) -> None:
+        if not sought:
+            self.nothing(line)
+            mark = self.opened(self.scoped(name), ("while",), line)
+        elif not self.continuing:
+            return
+        else:
+            self.continuing = False
+            mark = self.marks[self.scoped(name)]
+        self.run.jump(mark.text, mark.line)
+
+    def do(self, line: OLine, name: str, sought: bool = False) -> None:
+        self.nothing(line)
+        self.marks.setdefault(self.scoped(name), Mark("do", self.run.unit, self.run.line))
+
+    def repeat(self, line: OLine, name: str, sought: bool = False) -> None:
+        label = self.scoped(name)
+        known = self.marks.get(label)
+        if known is not None and known.taken:
+            known.left -= 1
+        else:
+            (count,) = self.values(line, 1, 1)
+            known = self.mark(label, "repeat")
+            known.left = round(count) if abs(count) < 1e15 else 0
+            known.taken = True
+        if known.left <= 0:
+            known.taken = False
+            self.skip(label, "endrepeat")
+
+    def endrepeat(self, line: OLine, name: str, sought: bool = False) -> None:
+        if not sought:
+            self.nothing(line)
+            mark = self.opened(self.scoped(name), ("repeat",), line)
+        elif not self.continuing:
+            return
+        else:
+            self.continuing = False
+            mark = self.marks[self.scoped(name)]
+        self.run.jump(mark.text, mark.line)
+
+    def break_(self, line: OLine, name: str, sought: bool = False) -> None:
+        self.nothing(line)
+        self.opened(self.scoped(name), LOOPS, line)
+        self.breaking = True
+        self.skip(self.scoped(name), "while", "endwhile")
+
+    def continue_(self, line: OLine, name: str, sought: bool = False) -> None:
+        self.nothing(line)
+        self.opened(self.scoped(name), LOOPS, line)
+        self.continuing = True
+        self.skip(self.scoped(name), "while", "endwhile")
+
+    # --- subroutines
+
+    def sub_(self, line: OLine, name: str, sought: bool = False) -> None:
+        """Met while running: the definition is passed over."""
+        self.nothing(line)
+        if name in self.marks:
+            raise refuse(f"the definition of {name} stands where the program runs into it", "put it behind M2")
+        self.mark(name, "sub")
+        self.skip(name, "endsub")
+
+    def endsub(self, line: OLine, name: str, sought: bool = False) -> None:
+        if sought:
+            if line.rest.startswith("["):
+                self.give_back(line)
+            return
+        self.return_(line, name)
+
+    def return_(self, line: OLine, name: str, sought: bool = False) -> None:
+        if not self.stack:
+            raise refuse(f"{line.keyword.upper()} outside a subroutine")
+        if self.stack[-1].fanuc:
+            raise refuse("a subroutine of M98 ends with M99")
+        self.give_back(line)
+        self.leave()
+
+    def give_back(self, line: OLine) -> None:
+        """The value behind RETURN or ENDSUB."""
+        values = self.values(line, 0, 1)
+        m = self.run.state
+        m.value = values[0] if values else 0.0
+        m.value_returned = bool(values)
+
+    def call_(self, line: OLine, name: str, sought: bool = False) -> None:
+        self.enter(name, self.values(line, 0, LOCALS), 1)
+
+    def enter(self, name: str, values: tuple[float, ...] | None, count: int) -> None:
+        """Call a subroutine. values: of its locals; None by M98, where they are shared. Raises Refusal."""
+        run, m = self.run, self.run.state
+        if len(self.stack) >= DEEPEST:
+            raise Refusal(F.TOO_DEEP, limit=DEEPEST, what="calls")
+        fanuc = values is None
+        kept = None
+        if values is not None:
+            kept = m.numbered[1 : LOCALS + 1]
+            m.numbered[1 : LOCALS + 1] = [*values, *[0.0] * (LOCALS - len(values))]
+        m.value_returned = False
+        self.stack.append(Level(run.unit, run.next_line, self.sub, kept, m.scope, name, fanuc, m.saved, count))
+        m.calls = len(self.stack)
+        if not fanuc:
+            m.scope = {}
+        m.saved = None
+        self.sub = name
+        known = self.marks.get(name)
+        if known is not None:
+            if known.kind != ("o" if fanuc else "sub"):
+                raise refuse(f"{name} is not for this kind of call", "O… SUB is for CALL, a bare O… for M98")
+            run.jump(known.text, known.line + 1)
+            return
+        self.search = Search(name, True, fanuc, (run.unit, run.line))
+        found = run.find_file(name)
+        if found is not None:
+            run.jump(found, 0)
+
+    def enter_found(self, line: OLine, name: str, search: Search) -> None:
+        if (line.keyword == "") != search.fanuc:
+            raise refuse(f"{name} is not for this kind of call", "O… SUB is for CALL, a bare O… for M98")
+        self.search = None
+        self.marks[name] = Mark("o" if search.fanuc else "sub", self.run.unit, self.run.line)
+
+    def leave(self) -> None:
+        """Go back to the caller."""
+        run, m = self.run, self.run.state
+        level = self.stack.pop()
+        run.restore_call(m)
+        if level.locals is not None:
+            m.numbered[1 : LOCALS + 1] = level.locals
+            m.scope = level.scope
+        m.saved = level.saved
+        m.calls = len(self.stack)
+        self.sub = level.sub
+        run.jump(level.text, level.line)
+
+    def bare(self, line: OLine, name: str, sought: bool = False) -> None:
+        """A number alone: where M98 enters; nothing to do when it is run into."""
+
+    def m98(self, name: str, count: int) -> None:
+        """M98: call a bare number, so many times. Raises Refusal."""
+        if count > 0:
+            self.enter(name, None, count)
+
+    def m99(self) -> bool:
+        """M99: back to M98, or run again; False in the main program. Raises Refusal."""
+        if not self.stack:
+            return False
+        level = self.stack[-1]
+        if not level.fanuc:
+            raise refuse("a subroutine of CALL ends with ENDSUB")
+        if level.count > 1:
+            self.stack[-1] = level._replace(count=level.count - 1)
+            mark = self.marks[level.label]
+            self.run.jump(mark.text, mark.line + 1)
+        else:
+            self.leave()
+        return True
+
+    WORDS: dict[str, Callable[..., None]] = {
+        "": bare, "sub": sub_, "endsub": endsub, "call": call_, "return": return_,
+        "if": if_, "elseif": elseif, "else": else_, "endif": endif,
+        "while": while_, "endwhile": endwhile, "do": do,
+        "repeat": repeat, "endrepeat": endrepeat, "break": break_, "continue": continue_,
+    }  # fmt: skip

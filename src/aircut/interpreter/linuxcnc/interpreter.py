@@ -1,0 +1,307 @@
+"""Runs programs of LinuxCNC's language, line by line.
+
+Source: the canonical listing, sections 3, 6, 7 and 9.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Generator
+from pathlib import Path
+from typing import Any
+
+from aircut.canon import CHUNK, ROW, Chunk
+from aircut.diagnostics import Frame, Refusal, Span
+from aircut.diagnostics import faults as F
+from aircut.interpreter.compiling import FAILURES
+from aircut.interpreter.linuxcnc import starting
+from aircut.interpreter.linuxcnc.arranging import Steps, arrange, check_values, gather
+from aircut.interpreter.linuxcnc.blocks import Block, OLine, check_number, parse, parse_o
+from aircut.interpreter.linuxcnc.comments import say
+from aircut.interpreter.linuxcnc.flow import Flow
+from aircut.interpreter.linuxcnc.saving import restore_call
+from aircut.interpreter.linuxcnc.state import State
+from aircut.interpreter.linuxcnc.text import check, clean
+from aircut.interpreter.requests import Request
+from aircut.interpreter.running import Run, Settings, Stopped
+from aircut.interpreter.table import Dialect
+from aircut.machine import Machine
+from aircut.source import Source
+
+FULL = CHUNK * ROW.size
+LITERAL = re.compile(r"(?<=[abcdefhijklpqrstuvwxyz=\[+\-*/,])(\d+\.?\d*|\.\d+)(?![\d.])")
+
+
+class Line:
+    """A line, read as far as needed. code: clean; comment: its last one."""
+
+    __slots__ = ("block", "checked", "code", "comment", "literals", "oline")
+
+    def __init__(self, code: str, comment: str | None) -> None:
+        self.code = code
+        self.comment = comment
+        self.oline: OLine | None = None
+        self.block: Block | None = None
+        self.literals: tuple[float, ...] = ()
+        self.checked = False
+
+
+class Text:
+    """A file being run: its source, and its lines as they are first met."""
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self.lines: dict[int, Line] = {}
+
+    def line(self, at: int) -> Line:
+        """A clean line. Raises Refusal."""
+        known = self.lines.get(at)
+        if known is None:
+            text = clean(self.source.text(at), len(self.source.raw(at)))
+            known = Line(text.code, text.comment)
+            check_number(text.code)
+            known.oline = parse_o(text.code)
+            self.lines[at] = known
+        return known
+
+
+class Interpreter(Run):
+    """A run of a program of this language."""
+
+    state: State
+    unit: Text
+    units: dict[str, Text]
+
+    def __init__(self, source: Source, dialect: Dialect, machine: Machine, settings: Settings | None = None) -> None:
+        super().__init__(source, dialect, machine, settings)
+        self.state = State(dialect, machine, self.warn)
+        self.unit = Text(source)
+        self.units = {source.name: self.unit}
+        self.flow = Flow(self)
+        self.next_line = 0
+        self.shared: dict[str, Block] = {}
+        self.steps: dict[Any, Steps] = {}
+        self.argument_cache: dict[OLine, Any] = {}
+        self.percent = False
+        self.found: dict[str, Text | None] = {}
+        self.repeated = 0
+        self.modal = dialect.codes["g80"]
+        self.restore_call = restore_call
+
+    # --- diagnostics
+
+    def warn(self, fault: Any, letter: str = "", **values: Any) -> None:
+        """A warning of the block being run."""
+        self.tell_refusal(Refusal(fault, letter, **values))
+
+    def tell_refusal(self, refusal: Refusal) -> None:
+        text = self.unit
+        frames = tuple(Frame(level.label, level.text.source.name, level.line) for level in self.flow.stack)
+        span = Span()
+        if self.line < len(text.source):
+            span = Span(self.line + 1, 1, len(text.source.text(self.line)) + 1)
+        self.tell(refusal.fault.at(text.source.name, span, frames, **refusal.values))
+
+    # --- the run
+
+    def execute(self) -> Generator[Chunk | Request, Any, None]:
+        m = self.state
+        starting.begin(m)
+        source = self.unit.source
+        first = next((at for at in range(len(source)) if source.raw(at).strip()), None)
+        if first is None:
+            self.tell(F.EMPTY_PROGRAM.at(source.name, Span())._replace(severity=F.END_MISSING.severity))
+            yield m.out.take()
+            return
+        m.out.event("ON_RESET")
+        if source.raw(first).strip() == b"%":
+            self.percent = True
+            self.next_line = first + 1
+        try:
+            yield from self.lines()
+        except Stopped:
+            pass
+        m.out.line = 0
+        m.out.event("ON_RESET")
+        m.out.event("ON_RESET")
+        yield m.out.take()
+
+    def lines(self) -> Generator[Chunk | Request, Any, None]:
+        """The main loop: a line a turn."""
+        m = self.state
+        out = m.out
+        while True:
+            self.line = self.next_line
+            if self.line >= len(self.unit.source):
+                self.run_off()
+            self.next_line = self.line + 1
+            m.line = out.line = self.line + 1
+            try:
+                self.step()
+            except Refusal as refusal:
+                self.tell_refusal(refusal)
+                raise Stopped from None
+            except FAILURES:
+                self.tell_refusal(Refusal(F.NO_VALUE))
+                raise Stopped from None
+            if m.finished:
+                self.finish()
+            if len(out.rows) >= FULL:
+                limit = self.settings.limits.moves
+                if limit is not None and out.moves > limit:
+                    self.warn(F.OUTPUT_LIMIT, limit=limit)
+                    raise Stopped
+                yield out.take()
+
+    def step(self) -> None:
+        """Run a line. Raises Refusal."""
+        text = self.unit
+        source = text.source
+        if source.classes[self.line] == 0 and not source.raw(self.line).strip():
+            return
+        if self.settings.block_delete and source.raw(self.line).lstrip().startswith(b"/"):
+            return
+        line = text.line(self.line)
+        if line.oline is not None:
+            self.flow.step(line.oline)
+            return
+        if self.flow.search is not None:
+            return
+        if line.code == "%":
+            self.close()
+        self.block(line)
+
+    def block(self, line: Line) -> None:
+        """Run a block of words. Raises Refusal."""
+        m = self.state
+        if m.stale:
+            m.stale = False
+            m.position = m.to_program(m.reached)
+        m.numbered[5600] = m.numbered[5601] = 0.0
+        block = line.block
+        if block is None:
+            block = self.compile(line)
+        values = block.values(m, line.literals)
+        if block.letters:
+            names, words = gather(block.letters, values, self.dialect)
+            key = (tuple(names), tuple(words), self.modal.name)
+            steps = self.steps.get(key)
+            if steps is None:
+                steps = self.steps[key] = arrange(names, words, self.modal, self.dialect)
+            check_values(steps.codes, words)
+        else:
+            steps, words = None, {}
+        if block.targets:
+            self.settle(block, values)
+        if line.comment is not None:
+            say(m, line.comment)
+        if steps is not None:
+            self.perform(steps, words)
+
+    def compile(self, line: Line) -> Block:
+        """The compiled block of a line; lines that differ in literal numbers alone share it. Raises Refusal."""
+        code = line.code
+        check(code)
+        if "<" in code or "n" in code[:2]:
+            line.block = parse(code)
+            return line.block
+        shape = LITERAL.sub("?", code)
+        block = self.shared.get(shape)
+        if block is None:
+            try:
+                block = parse(shape, True)
+            except Refusal:
+                block = parse(code)
+                line.block = block
+                return block
+            self.shared[shape] = block
+        line.literals = tuple(map(float, LITERAL.findall(code)))
+        line.block = block
+        return block
+
+    def settle(self, block: Block, values: tuple[float, ...]) -> None:
+        """Assign what the block sets. Raises Refusal."""
+        m = self.state
+        for (target, place), value in zip(block.targets, values[len(block.letters) :], strict=False):
+            if isinstance(target, str):
+                m.write_name(target, value)
+                continue
+            number = m.number_of(values[place]) if target is None else target
+            m.check_write(number)
+            m.numbered[number] = value
+
+    def perform(self, steps: Steps, words: dict[str, float]) -> None:
+        """Carry out the codes of a block in order. Raises Refusal."""
+        m = self.state
+        m.codes = steps.codes
+        m.words = words
+        m.machine_frame = False
+        m.plane_before = m.plane_code
+        m.changed = None
+        for row in steps.codes:
+            if row.modal:
+                self.modal = row
+                m.motion_name = row.name.lower()
+            row.run(m, words)
+        if m.transfer is not None:
+            transfer, m.transfer = m.transfer, None
+            transfer(self)
+
+    # --- ends
+
+    def jump(self, text: Text, line: int) -> None:
+        """Go on with this line."""
+        if text is not self.unit:
+            self.unit = text
+            self.state.out.file = self.files.index(text.source.name)
+        if line <= self.line:
+            self.repeated += 1
+            if self.repeated > self.settings.limits.blocks:
+                raise Refusal(F.BLOCK_BUDGET, limit=self.settings.limits.blocks, first=line + 1, last=self.line + 1)
+        self.next_line = line
+
+    def run_off(self) -> None:
+        """The file has no more lines. Raises Stopped."""
+        flow = self.flow
+        if flow.search is not None and flow.search.call and flow.search.where:
+            self.unit, self.line = flow.search.where
+            refusal = Refusal(F.NO_SUBROUTINE, name=flow.search.label, hint="")
+        else:
+            self.line = max(len(self.unit.source) - 1, 0)
+            refusal = Refusal(F.END_MISSING)
+        self.tell_refusal(refusal)
+        raise Stopped
+
+    def close(self) -> None:
+        """A second percent sign. Raises Refusal, Stopped."""
+        if not self.percent or self.flow.stack:
+            raise Refusal(F.MISPLACED_PERCENT)
+        self.state.out.event("FINISH")
+        raise Stopped
+
+    def finish(self) -> None:
+        """The end of the program. Raises Stopped."""
+        starting.finish(self.state)
+        if self.percent:
+            source = self.units[self.files[0]].source
+            last = self.line + 1 if self.unit is self.units[self.files[0]] else 0
+            if not any(source.raw(at).strip() == b"%" for at in range(last, len(source))):
+                self.state.out.event("COMMENT", "interpreter: percent sign missing from end of file")
+        raise Stopped
+
+    # --- files
+
+    def find_file(self, name: str) -> Text | None:
+        """The file of a subroutine: in the working directory, then in the machine's folders."""
+        if name not in self.found:
+            self.found[name] = None
+            for folder in (Path(), *self.machine.macros):
+                file = folder / f"{name}.ngc"
+                if file.is_file():
+                    text = self.units.get(str(file)) or Text(Source.load(file))
+                    if str(file) not in self.units:
+                        self.units[str(file)] = text
+                        self.files.append(str(file))
+                    self.found[name] = text
+                    break
+        return self.found[name]

@@ -1,0 +1,55 @@
+"""LinuxCNC's language as tables.
+
+Sources: 001; the canonical listing.
+"""
+
+from __future__ import annotations
+
+from aircut.interpreter.linuxcnc import calls, compensation, modes, motion, offsets, outputs, saving, tooling
+from aircut.interpreter.linuxcnc.interpreter import Interpreter
+from aircut.interpreter.linuxcnc.named import NAMED
+from aircut.interpreter.state import INCH
+from aircut.interpreter.table import Code, Dialect
+from aircut.machine.tools import Tool
+
+CODES = (
+    *motion.CODES,
+    *modes.CODES,
+    *offsets.CODES,
+    *tooling.CODES,
+    *outputs.CODES,
+    *saving.CODES,
+    *compensation.CODES,
+    *calls.CODES,
+)
+
+
+def key(row: Code) -> str:
+    return row.name.lower()
+
+
+#: The tools that the stand-alone interpreter starts with, mm.
+TOOLS = (
+    Tool(1, slot=1, z=0.511 * INCH, diameter=0.125 * INCH),
+    Tool(2, slot=2, z=0.1 * INCH, diameter=0.0625 * INCH),
+    Tool(3, slot=3, z=1.273 * INCH, diameter=0.201 * INCH),
+    Tool(99999, slot=123, z=0.1 * INCH),
+)
+
+LINUXCNC = Dialect(
+    name="linuxcnc",
+    title="LinuxCNC",
+    interpreter=Interpreter,
+    codes={key(row): row for row in CODES},
+    items={row.name.lower(): row for row in (*modes.ITEMS, *tooling.ITEMS)},
+    unsupported=frozenset(),
+    ranges=(),
+    system=(),
+    named={row.name: row for row in NAMED},
+    start=(),
+    local_underscore=False,
+    settings=offsets.SETTINGS,
+    no_variable="parameters are #1 to #5601",
+    axes="XYZABC",
+    tools=TOOLS,
+)

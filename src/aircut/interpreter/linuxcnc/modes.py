@@ -1,0 +1,316 @@
+"""Modes of LinuxCNC's language: feed, units, planes, distances, path, spindle, coolant, overrides.
+
+Sources: 001; the canonical listing, sections 4, 5 and 14.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+from aircut.canon import EXACT_PATH, EXACT_STOP
+from aircut.diagnostics import Refusal
+from aircut.diagnostics import faults as F
+from aircut.interpreter.linuxcnc.motion import wrong
+from aircut.interpreter.linuxcnc.state import LINEAR, State
+from aircut.interpreter.state import INCH
+from aircut.interpreter.table import Code, Group, Order, Words
+
+PLANES = {170: (0, "XY"), 180: (1, "XZ"), 190: (2, "YZ"), 171: (0, "UNKNOWN"), 181: (1, "UNKNOWN"), 191: (2, "UNKNOWN")}
+UNLIMITED = 1e30  # rpm of G96 without D
+
+
+def said(m: State, text: str) -> None:
+    """A comment of the interpreter's own."""
+    m.out.event("COMMENT", "interpreter: " + text)
+
+
+# --- feed
+
+
+def set_feed_mode(mode: int, m: State, w: Words) -> None:
+    """G93, G94, G95: F is due again."""
+    text = {93: "inverse time", 94: "units per minute", 95: "units per revolution"}[mode]
+    spindle = spindle_of(m, w, mode == 95)
+    said(m, f"feed mode set to {text}")
+    m.feed_mode = mode
+    m.inverse_time = mode == 93
+    if mode == 93:
+        m.out.event("SET_FEED_MODE", 0, 0)
+        return
+    m.out.event("SET_FEED_MODE", spindle, int(mode == 95))
+    set_rate(m, 0.0)
+
+
+def set_rate(m: State, feed: float) -> None:
+    m.gave_feed = feed
+    m.out.event("SET_FEED_RATE", feed * m.unit)
+
+
+def feed_word(m: State, w: Words) -> None:
+    """F; under G93 it belongs to the move."""
+    if m.feed_mode != 93:
+        set_rate(m, w["f"])
+
+
+# --- spindle
+
+
+def spindle_of(m: State, w: Words, used: bool = True) -> int:
+    """The $ word: there is one spindle, 0; -1 is all of them. Raises Refusal."""
+    if not used or "$" not in w:
+        return 0
+    value = w["$"]
+    if abs(value - round(value)) > 1e-4 or round(value) not in (0, -1):
+        raise Refusal(F.BAD_VALUE, "$", word="$", value=value, wanted="the machine has one spindle, 0")
+    return 0
+
+
+def speed_word(m: State, w: Words) -> None:
+    """S."""
+    spindle_of(m, w)
+    m.speed = w["s"]
+    m.out.event("SET_SPINDLE_SPEED", 0, m.speed)
+
+
+def turn_spindle(direction: int, m: State, w: Words) -> None:
+    """M3, M4, M5."""
+    spindle_of(m, w)
+    m.spindle = direction
+    name = {3: "START_SPINDLE_CLOCKWISE", 4: "START_SPINDLE_COUNTERCLOCKWISE", 5: "STOP_SPINDLE_TURNING"}[direction]
+    m.out.event(name, 0)
+
+
+def constant_surface(m: State, w: Words) -> None:
+    """G96: the S word is a surface speed, D the highest number of revolutions."""
+    m.css = True
+    m.out.event("SET_SPINDLE_MODE", spindle_of(m, w), abs(w["d"]) if "d" in w else UNLIMITED)
+
+
+def constant_revolutions(m: State, w: Words) -> None:
+    """G97."""
+    m.css = False
+    m.out.event("SET_SPINDLE_MODE", spindle_of(m, w), 0.0)
+
+
+def orient(m: State, w: Words) -> None:
+    """M19: turn the spindle to R degrees, and wait for it with Q. Raises Refusal."""
+    if "r" in w and not 0.0 <= w["r"] <= 360.0:
+        raise Refusal(F.BAD_VALUE, "r", word="R", value=w["r"], wanted="0 to 360 degrees")
+    if "p" in w and w["p"] not in (0.0, 1.0, 2.0):
+        raise Refusal(F.BAD_VALUE, "p", word="P", value=w["p"], wanted="0, 1 or 2")
+    if "q" in w and w["q"] <= 0.0:
+        raise Refusal(F.BAD_VALUE, "q", word="Q", value=w["q"], wanted="seconds above zero")
+    if "r" in w or "p" in w:
+        m.out.event("ORIENT_SPINDLE", 0, w.get("r", 0.0), int(w.get("p", 0.0)))
+    if "q" in w:
+        m.out.event("WAIT_ORIENT_COMPLETE", 0, w["q"])
+
+
+# --- planes, units, distances
+
+
+def set_plane(code: int, m: State, w: Words) -> None:
+    """G17 to G19.1. Raises Refusal."""
+    if m.compensating and code != m.plane_code:
+        raise Refusal(F.UNDER_COMPENSATION, what="another plane")
+    m.plane_code = code
+    m.plane, name = PLANES[code]
+    m.out.event("SELECT_PLANE", name)
+
+
+def set_units(unit: float, m: State, w: Words) -> None:
+    """G20, G21: lengths are kept in mm, so nothing is turned.
+
+    But the tool's offset keeps its number, not its length: LinuxCNC forgets to turn it.
+    """
+    ratio = unit / m.unit
+    m.tool_offset = [t * ratio if i in LINEAR else t for i, t in enumerate(m.tool_offset)]
+    m.unit = unit
+    m.out.event("USE_LENGTH_UNITS", "MM" if unit == 1.0 else "INCHES")
+
+
+def set_distance(absolute: bool, m: State, w: Words) -> None:
+    """G90, G91."""
+    if m.absolute != absolute:
+        said(m, f"distance mode changed to {'absolute' if absolute else 'incremental'}")
+    m.absolute = absolute
+
+
+def set_arc_distance(absolute: bool, m: State, w: Words) -> None:
+    """G90.1, G91.1."""
+    if m.arc_absolute != absolute:
+        said(m, f"IJK distance mode changed to {'absolute' if absolute else 'incremental'}")
+    m.arc_absolute = absolute
+
+
+def set_diameter(diameter: bool, m: State, w: Words) -> None:
+    """G7, G8."""
+    if m.diameter != diameter:
+        said(m, f"Lathe diameter mode changed to {'diameter' if diameter else 'radius'}")
+    m.diameter = diameter
+
+
+def set_retract(mode: int, m: State, w: Words) -> None:
+    """G98, G99. Raises Refusal."""
+    if m.compensating:
+        raise Refusal(F.UNDER_COMPENSATION, what="G98 or G99")
+    m.retract = mode
+    said(m, f"retract mode set to {'old_z' if mode == 98 else 'r_plane'}")
+
+
+# --- path
+
+
+def exact(mode: int, m: State, w: Words) -> None:
+    """G61, G61.1. Raises Refusal."""
+    if m.compensating:
+        raise Refusal(F.UNDER_COMPENSATION, what="G61")
+    m.path_mode = mode
+    m.flags = EXACT_PATH if mode == 61 else EXACT_STOP
+    m.out.event("SET_MOTION_CONTROL_MODE", "EXACT_PATH" if mode == 61 else "EXACT_STOP")
+
+
+def blending(m: State, w: Words) -> None:
+    """G64: P the tolerance of blending, Q of thinning. Raises Refusal."""
+    if m.compensating:
+        raise Refusal(F.UNDER_COMPENSATION, what="G64")
+    m.path_mode = 64
+    m.flags = 0
+    m.blend = m.length(w, "p")
+    m.thinning = m.length(w, "q", m.blend)
+    tell_blending(m)
+
+
+def tell_blending(m: State) -> None:
+    m.out.event("SET_MOTION_CONTROL_BLEND", m.blend)
+    m.out.event("SET_NAIVECAM_TOLERANCE", m.thinning)
+
+
+# --- coolant, overrides, stops
+
+
+def coolant(mist: bool | None, m: State, w: Words) -> None:
+    """M7 (mist), M8 (flood), M9 (neither)."""
+    if mist is None:
+        m.mist = m.flood = False
+        m.out.event("MIST_OFF")
+        m.out.event("FLOOD_OFF")
+    elif mist:
+        m.mist = True
+        m.out.event("MIST_ON")
+    else:
+        m.flood = True
+        m.out.event("FLOOD_ON")
+
+
+def override(feed: bool, speed: bool, on: bool, m: State, w: Words) -> None:
+    """M48, M49; M50 and M51 with P. Raises Refusal."""
+    barred(m)
+    if feed:
+        m.feed_override = int(on)
+        m.out.event("ENABLE_FEED_OVERRIDE" if on else "DISABLE_FEED_OVERRIDE")
+    if speed:
+        m.speed_override = int(on)
+        m.out.event("ENABLE_SPEED_OVERRIDE" if on else "DISABLE_SPEED_OVERRIDE", 0)
+
+
+def by_p(feed: bool, m: State, w: Words) -> None:
+    """M50, M51: P0 is off; without P, on."""
+    spindle_of(m, w, not feed)
+    override(feed, not feed, w.get("p", 1.0) != 0.0, m, w)
+
+
+def barred(m: State) -> None:
+    if m.compensating:
+        raise Refusal(F.UNDER_COMPENSATION, what="M48 to M53")
+
+
+def adaptive(m: State, w: Words) -> None:
+    """M52."""
+    barred(m)
+    m.adaptive = w.get("p", 1.0) != 0.0
+    m.out.event("ENABLE_ADAPTIVE_FEED" if m.adaptive else "DISABLE_ADAPTIVE_FEED")
+
+
+def hold(m: State, w: Words) -> None:
+    """M53."""
+    barred(m)
+    m.hold = w.get("p", 1.0) != 0.0
+    m.out.event("ENABLE_FEED_HOLD" if m.hold else "DISABLE_FEED_HOLD")
+
+
+def dwell(m: State, w: Words) -> None:
+    """G4. Raises Refusal."""
+    if any(row.name in ("G2", "G3") for row in m.codes):
+        raise wrong("G4 is not possible with G2 or G3: both use P")
+    if w["p"] < 0.0:
+        raise Refusal(F.BAD_VALUE, "p", word="P", value=w["p"], wanted="seconds from 0")
+    m.out.event("DWELL", w["p"])
+
+
+def stop(event: str, m: State, w: Words) -> None:
+    """M0, M1."""
+    m.out.event(event)
+
+
+def shuttle(m: State, w: Words) -> None:
+    """M60."""
+    m.out.event("PALLET_SHUTTLE")
+    m.out.event("PROGRAM_STOP")
+
+
+def end(pallet: bool, m: State, w: Words) -> None:
+    """M2, M30: the interpreter closes the run."""
+    m.finished = True
+    m.stop_code = 30.0 if pallet else 2.0
+
+
+plane = partial(Code, group=Group.PLANE, order=Order.PLANE)
+COOLANT = Group.MIST | Group.FLOOD
+OVERRIDE = Group.FEED_OVERRIDE | Group.SPEED_OVERRIDE
+stopping = partial(Code, group=Group.STOP, order=Order.STOP)
+
+CODES = (
+    Code("G93", "Inverse time feed", partial(set_feed_mode, 93), Group.FEED_MODE, Order.FEED_MODE),
+    Code("G94", "Units a minute", partial(set_feed_mode, 94), Group.FEED_MODE, Order.FEED_MODE),
+    Code("G95", "Units a revolution", partial(set_feed_mode, 95), Group.FEED_MODE, Order.FEED_MODE, takes="$"),
+    Code("G96", "Constant surface speed", constant_surface, Group.SPINDLE_MODE, Order.SPINDLE_MODE,
+         takes="d$", needs="s"),
+    Code("G97", "Constant revolutions", constant_revolutions, Group.SPINDLE_MODE, Order.SPINDLE_MODE, takes="$"),
+    *(plane(f"G{n / 10:g}", "Plane", partial(set_plane, n)) for n in (170, 180, 190, 171, 181, 191)),
+    Code("G20", "Inches", partial(set_units, INCH), Group.UNITS, Order.UNITS),
+    Code("G21", "Millimeters", partial(set_units, 1.0), Group.UNITS, Order.UNITS),
+    Code("G7", "Diameters", partial(set_diameter, True), Group.DIAMETER, Order.DIAMETER),
+    Code("G8", "Radii", partial(set_diameter, False), Group.DIAMETER, Order.DIAMETER),
+    Code("G61", "Exact path", partial(exact, 61), Group.PATH, Order.PATH),
+    Code("G61.1", "Exact stop", partial(exact, 611), Group.PATH, Order.PATH),
+    Code("G64", "Continuous path", blending, Group.PATH, Order.PATH, takes="pq"),
+    Code("G90", "Absolute positions", partial(set_distance, True), Group.DISTANCE, Order.DISTANCE),
+    Code("G91", "Incremental positions", partial(set_distance, False), Group.DISTANCE, Order.DISTANCE),
+    Code("G90.1", "Absolute centers", partial(set_arc_distance, True), Group.ARC_DISTANCE, Order.ARC_DISTANCE),
+    Code("G91.1", "Incremental centers", partial(set_arc_distance, False), Group.ARC_DISTANCE, Order.ARC_DISTANCE),
+    Code("G98", "Retract to the start", partial(set_retract, 98), Group.RETRACT, Order.RETRACT),
+    Code("G99", "Retract to R", partial(set_retract, 99), Group.RETRACT, Order.RETRACT),
+    Code("G4", "Dwell", dwell, Group.NON_MODAL, Order.DWELL, takes="p", needs="p"),
+    *(Code(f"M{n}", "Spindle", partial(turn_spindle, n), Group.SPINDLE, Order.SPINDLE, takes="$") for n in (3, 4, 5)),
+    Code("M19", "Orient the spindle", orient, Group.SPINDLE, Order.SPINDLE, takes="rpq$", counts="p"),
+    Code("M7", "Mist", partial(coolant, True), COOLANT, Order.COOLANT),
+    Code("M8", "Flood", partial(coolant, False), COOLANT, Order.COOLANT),
+    Code("M9", "Coolant off", partial(coolant, None), COOLANT, Order.COOLANT),
+    Code("M48", "Overrides on", partial(override, True, True, True), OVERRIDE, Order.OVERRIDE),
+    Code("M49", "Overrides off", partial(override, True, True, False), OVERRIDE, Order.OVERRIDE),
+    Code("M50", "Feed override", partial(by_p, True), OVERRIDE, Order.OVERRIDE, takes="p"),
+    Code("M51", "Speed override", partial(by_p, False), OVERRIDE, Order.OVERRIDE, takes="p$"),
+    Code("M52", "Adaptive feed", adaptive, OVERRIDE, Order.OVERRIDE, takes="p"),
+    Code("M53", "Feed hold", hold, OVERRIDE, Order.OVERRIDE, takes="p"),
+    stopping("M0", "Stop", partial(stop, "PROGRAM_STOP")),
+    stopping("M1", "Optional stop", partial(stop, "OPTIONAL_PROGRAM_STOP")),
+    stopping("M60", "Pallet shuttle and stop", shuttle),
+    stopping("M2", "End of program", partial(end, False)),
+    stopping("M30", "End of program, pallet shuttle", partial(end, True)),
+)  # fmt: skip
+
+ITEMS = (
+    Code("F", "Feed", feed_word, Group(0), Order.FEED),
+    Code("S", "Spindle speed", speed_word, Group(0), Order.SPEED, takes="$"),
+)

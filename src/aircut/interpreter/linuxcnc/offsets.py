@@ -1,0 +1,242 @@
+"""Work systems, G92 and G52, and G10 of LinuxCNC's language.
+
+Sources: 001; the canonical listing, sections 2 and 10.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+from msgspec.structs import replace
+
+from aircut.diagnostics import Refusal
+from aircut.diagnostics import faults as F
+from aircut.interpreter.linuxcnc.modes import said
+from aircut.interpreter.linuxcnc.motion import wrong
+from aircut.interpreter.linuxcnc.state import G92, LINEAR, NUMBERED_NINE, ORIGINS, STEP, SYSTEM, State
+from aircut.interpreter.state import EQUAL, INCH
+from aircut.interpreter.table import Code, Group, Order, Words
+
+SYSTEMS = 9
+
+
+def tell_system(m: State) -> None:
+    m.out.event("SET_G5X_OFFSET", m.system + 1, *m.origin[:6])
+
+
+def tell_rotation(m: State) -> None:
+    m.out.event("SET_XY_ROTATION", m.rotation)
+
+
+def tell_shift(m: State) -> None:
+    m.out.event("SET_G92_OFFSET", *m.shift[:6])
+
+
+def select(system: int, m: State, w: Words) -> None:
+    """G54 to G59.3. Raises Refusal."""
+    if m.compensating:
+        raise Refusal(F.UNDER_COMPENSATION, what="another work system")
+    if system == m.system:
+        said(m, "continuing to use same coordinate system")
+        return
+    m.system = system
+    m.numbered[SYSTEM] = system + 1.0
+    m.load_system()
+    tell_system(m)
+    tell_shift(m)
+    tell_rotation(m)
+
+
+def shift_of(m: State) -> None:
+    """Remember the axis offset."""
+    m.store(G92 + 1, m.shift)
+
+
+def bar_shift(m: State) -> None:
+    if m.compensating:
+        raise Refusal(F.UNDER_COMPENSATION, what="an axis offset")
+
+
+def set_here(m: State, w: Words) -> None:
+    """G92: the present position reads as given. Raises Refusal."""
+    bar_shift(m)
+    shift = m.shift[:]
+    for i, letter in NUMBERED_NINE:
+        if letter in w:
+            shift[i] += m.position[i] - m.axis(w, i)
+    put_shift(m, shift)
+
+
+def set_local(m: State, w: Words) -> None:
+    """G52: the offset itself. Raises Refusal."""
+    bar_shift(m)
+    shift = m.shift[:]
+    for i, letter in NUMBERED_NINE:
+        if letter in w:
+            shift[i] = m.axis(w, i)
+    put_shift(m, shift)
+
+
+def put_shift(m: State, shift: list[float]) -> None:
+    m.set_shift(shift)
+    tell_shift(m)
+    m.numbered[G92] = 1.0
+    shift_of(m)
+
+
+def clear_shift(forget: bool, m: State, w: Words) -> None:
+    """G92.1 (forgets the offset), G92.2. Raises Refusal."""
+    bar_shift(m)
+    m.set_shift([0.0] * 9)
+    tell_shift(m)
+    m.numbered[G92] = 0.0
+    if forget:
+        shift_of(m)
+
+
+def restore_shift(m: State, w: Words) -> None:
+    """G92.3. Raises Refusal."""
+    bar_shift(m)
+    m.set_shift(m.stored(G92 + 1))
+    tell_shift(m)
+    m.numbered[G92] = 1.0
+
+
+def settings(m: State, w: Words) -> None:
+    """G10: its L says what. Raises Refusal."""
+    row = m.dialect.settings.get(int(w["l"])) if "l" in w else None
+    if row is None:
+        raise Refusal(F.UNKNOWN_PARAMETER, "l", l=w.get("l", -1.0))
+    for letter in row.needs:
+        if letter not in w:
+            raise Refusal(F.MISSING_WORD, code=row.name, word=letter.upper(), meaning="")
+    for letter in w:
+        if letter in "ijkqrp@^" and letter not in row.takes:
+            raise Refusal(F.UNUSED_WORD, letter, word=letter.upper())
+    row.run(m, w)
+
+
+def system_of(m: State, w: Words) -> int:
+    """The work system of G10's P, from 0. Raises Refusal."""
+    value = w["p"]
+    number = int(value)
+    rest = value - number
+    if EQUAL < rest < 0.5 or not 0 <= value < SYSTEMS + 1:
+        raise Refusal(F.BAD_VALUE, "p", word="P", value=value, wanted="a work system, 0 to 9")
+    return number - 1 if number else m.system
+
+
+def set_system(here: bool, m: State, w: Words) -> None:
+    """G10 L2: origin and rotation as given; L20: so that the present position reads as given. Raises Refusal."""
+    system = system_of(m, w)
+    if m.compensating and system == m.system:
+        raise Refusal(F.UNDER_COMPENSATION, what="G10 on the active system")
+    first = ORIGINS + STEP * system
+    if "r" in w:
+        m.numbered[first + 9] = w["r"]
+    rotation = m.numbered[first + 9]
+    if here:
+        store_here(m, w, first, rotation)
+    else:
+        for i, letter in NUMBERED_NINE:
+            if letter in w:
+                m.numbered[first + i] = m.axis(w, i) / (INCH if i in LINEAR else 1.0)
+    if system == m.system:
+        m.load_system()
+        tell_system(m)
+        tell_rotation(m)
+    else:
+        said(m, "setting coordinate system origin")
+
+
+def store_here(m: State, w: Words, first: int, rotation: float) -> None:
+    """Origins from which the present position reads as given; X and Y are solved in the rotated frame."""
+    space = m.to_space(m.position)
+    origin = m.stored(first)
+    reads = [p - o for p, o in zip(space, origin, strict=True)]
+    reads[0], reads[1] = m.turned(reads[0], reads[1], -rotation)
+    for i, letter in NUMBERED_NINE:
+        if letter in w:
+            reads[i] = m.axis(w, i) + m.shift[i]
+    reads[0], reads[1] = m.turned(reads[0], reads[1], rotation)
+    for i, letter in NUMBERED_NINE:
+        if letter in w or (i < 2 and rotation and ("x" in w or "y" in w)):
+            m.numbered[first + i] = (space[i] - reads[i]) / (INCH if i in LINEAR else 1.0)
+
+
+def reload_tools(m: State, w: Words) -> None:
+    """G10 L0. Raises Refusal."""
+    if m.slots[0].id > 0:
+        raise wrong("G10 L0 is not possible with a tool in the spindle", "program T0 M6 before")
+    m.out.event("RELOAD_TOOLDATA")
+    m.slots = [m.slots[0], *m.machine.tools.values()]
+    m.stale = True
+
+
+def set_tool(kind: int, m: State, w: Words) -> None:
+    """G10 L1: offsets as given; L10, L11: so that the present position reads as given. Raises Refusal."""
+    if not any(letter in w for letter in "xyzabcuvwrijq"):
+        raise Refusal(F.MISSING_WORD, code="G10 L1", word="an offset", meaning="")
+    number = round(w["p"])
+    if abs(w["p"] - number) > EQUAL or number < 1:
+        raise Refusal(F.BAD_VALUE, "p", word="P", value=w["p"], wanted="a tool's number")
+    slot = m.slot_of(number)
+    tool = m.slots[slot]
+    if "q" in w and (abs(w["q"] - round(w["q"])) > EQUAL or not 0 <= round(w["q"]) <= 9):
+        raise Refusal(F.BAD_VALUE, "q", word="Q", value=w["q"], wanted="an orientation, 0 to 9")
+    changes: dict[str, float] = {}
+    reads = tool_reads(kind, m)
+    for i, letter in NUMBERED_NINE:
+        if letter in w:
+            changes[letter] = m.axis(w, i) if kind == 1 else reads[i] - m.axis(w, i)
+    if "r" in w:
+        changes["diameter"] = 2.0 * m.length(w, "r")
+    changes |= {field: w[letter] for letter, field in (("i", "p1"), ("j", "p2")) if letter in w}
+    if "q" in w:
+        changes["p3"] = float(round(w["q"]))
+    tool = m.slots[slot] = replace(tool, **changes)
+    tell_tool(m, slot)
+    if slot == m.slot:
+        m.slots[0] = tool
+        tell_tool(m, 0)
+        m.show_tool()
+
+
+def tool_reads(kind: int, m: State) -> list[float]:
+    """The present position as G10 L10 (in the active system) and L11 (in G59.3, without G92) see it."""
+    if kind != 11:
+        return [p + t for p, t in zip(m.position, m.tool_offset, strict=True)]
+    space = m.to_space(m.position)
+    first = ORIGINS + STEP * (SYSTEMS - 1)
+    moved = [s + t - o for s, t, o in zip(space, m.tool_offset, m.stored(first), strict=True)]
+    moved[0], moved[1] = m.turned(moved[0], moved[1], -m.numbered[first + 9])
+    return moved
+
+
+def tell_tool(m: State, slot: int) -> None:
+    tool = m.slots[slot]
+    m.out.event("STORE_TOOL", slot, tool.id, *tool.offsets(), tool.p1, tool.p2, int(tool.p3))
+
+
+single = partial(Code, group=Group.NON_MODAL, order=Order.NON_MODAL)
+setting = partial(Code, group=Group.NON_MODAL, order=Order.NON_MODAL)
+SYSTEM_NAMES = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
+
+CODES = (
+    *(Code(name, "Work system", partial(select, i), Group.SYSTEM, Order.SYSTEM) for i, name in enumerate(SYSTEM_NAMES)),
+    single("G10", "Set offsets or tools", settings, axes=True, takes="lpijkqr"),
+    single("G52", "Local offset", set_local, axes=True, needs_axes=True),
+    single("G92", "Let the position read as given", set_here, axes=True, needs_axes=True),
+    single("G92.1", "Clear and forget G92", partial(clear_shift, True)),
+    single("G92.2", "Suspend G92", partial(clear_shift, False)),
+    single("G92.3", "Restore G92", restore_shift),
+)
+
+SETTINGS = {
+    0: setting("G10 L0", "Reload the tool table", reload_tools),
+    1: setting("G10 L1", "Set a tool's offsets", partial(set_tool, 1), takes="prijq", needs="p"),
+    2: setting("G10 L2", "Set a work system", partial(set_system, False), takes="pr", needs="p"),
+    10: setting("G10 L10", "Set a tool by the position", partial(set_tool, 10), takes="prijq", needs="p"),
+    11: setting("G10 L11", "Set a tool by the position in G59.3", partial(set_tool, 11), takes="prijq", needs="p"),
+    20: setting("G10 L20", "Set a work system by the position", partial(set_system, True), takes="p", needs="p"),
+}

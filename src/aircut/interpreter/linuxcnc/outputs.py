@@ -1,0 +1,67 @@
+"""Outputs and inputs of LinuxCNC's language: M62 to M68.
+
+Source: the canonical listing, section 14.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+from aircut.diagnostics import Refusal
+from aircut.diagnostics import faults as F
+from aircut.interpreter.linuxcnc.arranging import whole
+from aircut.interpreter.linuxcnc.motion import wrong
+from aircut.interpreter.linuxcnc.state import State
+from aircut.interpreter.table import Code, Group, Order, Words
+
+
+def bar(m: State) -> None:
+    if m.compensating:
+        raise Refusal(F.UNDER_COMPENSATION, what="M62 to M68")
+
+
+def index(w: Words, letter: str) -> int:
+    number = whole(letter, w[letter])
+    if number < 0:
+        raise Refusal(F.BAD_VALUE, letter, word=letter.upper(), value=w[letter], wanted="an output, from 0")
+    return number
+
+
+def digital(event: str, m: State, w: Words) -> None:
+    """M62 to M65: output P."""
+    bar(m)
+    m.out.event(event, index(w, "p"))
+
+
+def analog(event: str, m: State, w: Words) -> None:
+    """M67, M68: output E to Q."""
+    bar(m)
+    m.out.event(event, index(w, "e"), w.get("q", 0.0))
+
+
+def wait(m: State, w: Words) -> None:
+    """M66: prints nothing. Raises Refusal."""
+    bar(m)
+    if ("p" in w) == ("e" in w):
+        raise wrong("M66 needs P or E, and not both")
+    kind = int(w.get("l", 0.0))
+    if not 0 <= kind <= 4:
+        raise Refusal(F.BAD_VALUE, "l", word="L", value=kind, wanted="0 to 4")
+    if kind and w.get("q", 0.0) <= 0.0:
+        raise wrong("M66 L1 to L4 needs Q above zero")
+    if "e" in w and kind:
+        raise wrong("M66 E takes only L0")
+    index(w, "p" if "p" in w else "e")
+
+
+io = partial(Code, group=Group.IO, order=Order.IO)
+
+CODES = (
+    io("M62", "Output on with the motion", partial(digital, "SET_MOTION_OUTPUT_BIT"), takes="p", needs="p"),
+    io("M63", "Output off with the motion", partial(digital, "CLEAR_MOTION_OUTPUT_BIT"), takes="p", needs="p"),
+    io("M64", "Output on", partial(digital, "SET_AUX_OUTPUT_BIT"), takes="p", needs="p"),
+    io("M65", "Output off", partial(digital, "CLEAR_AUX_OUTPUT_BIT"), takes="p", needs="p"),
+    io("M66", "Wait for an input", wait, takes="pelq"),
+    io("M67", "Analog output with the motion", partial(analog, "SET_MOTION_OUTPUT_VALUE"), takes="eq", needs="e"),
+    io("M68", "Analog output", partial(analog, "SET_AUX_OUTPUT_VALUE"), takes="eq", needs="e"),
+)

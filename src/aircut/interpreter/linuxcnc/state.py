@@ -1,0 +1,204 @@
+"""The state of a run of LinuxCNC's language: what the house's state has, and what is its own.
+
+Lengths mm, angles degrees. Numbered parameters hold what programs see: the machine's
+units are inches, so offsets among them are inches (canonical listing, section 2).
+Axes are X Y Z A B C U V W; a rotation about Z stands between the work system's origin
+and the axis offset of G92: machine = origin + rotated(position + shift).
+"""
+
+from __future__ import annotations
+
+from math import cos, radians, sin
+from typing import Any
+
+from aircut.diagnostics import Refusal
+from aircut.diagnostics import faults as F
+from aircut.interpreter import state as house
+from aircut.interpreter.state import INCH
+from aircut.interpreter.table import Code
+from aircut.machine.tools import EMPTY, Tool
+
+NINE = "xyzabcuvw"
+NUMBERED_NINE = tuple(enumerate(NINE))
+LINEAR = frozenset((0, 1, 2, 6, 7, 8))
+LAST = 5601  # highest numbered parameter
+LOCALS = 30  # of them the first ones belong to a call
+POSITION = 5420  # parameters of the present position
+READ_ONLY = (*range(5400, 5414), *range(POSITION, POSITION + 9))
+G28, G30, G92, SYSTEM, ORIGINS, STEP = 5161, 5181, 5210, 5220, 5221, 20
+PROBED = 5061
+TOOL_DATA = 5400
+DEBUGGING = 5599
+
+
+class State(house.State):
+    """All that a block of this language can read and change."""
+
+    numbered: list[float]  # type: ignore[assignment]  # nothing is null here
+    position: list[float]  # nine
+
+    def __init__(self, dialect: Any, machine: Any, warn: Any) -> None:
+        super().__init__(dialect, machine, warn)
+        self.position = [0.0] * 9
+        self.numbered = [0.0] * (LAST + 1)
+        for number, value in machine.variables.items():
+            if 0 < number <= LAST:
+                self.numbered[number] = value
+        self.numbered[DEBUGGING] = 1.0
+        self.origin = [0.0] * 9
+        self.rotation = 0.0  # degrees
+        self.shift = [0.0] * 9  # G92 and G52
+        self.tool_offset = [0.0] * 9
+        self.reached = [0.0] * 9  # end of the last printed move, machine coordinates without the tool
+        self.stale = False  # the position is taken from there before the next block
+        self.slots: list[Tool] = [EMPTY, *machine.tools.values()]  # slot 0 is the spindle
+        self.slot = 1  # of the tool in the spindle, before any change
+        self.changed: Tool | None = None  # by M6 of this block
+        self.selected_slot = -1
+        self.gave_feed = 0.0  # the F word in force
+        self.words: dict[str, float] = {}  # of the block
+        self.codes: tuple[Code, ...] = ()  # of the block
+        self.motion_name = "g80"
+        self.retract = 99
+        self.diameter = False  # G7
+        self.feed_mode = 94
+        self.plane_code = 170
+        self.path_mode = 64
+        self.css = False
+        self.compensating = 0  # 0, 41, 42
+        self.arc_refused = False  # right after G40
+        self.length_on = False
+        self.adaptive = False
+        self.hold = True
+        self.value = 0.0  # of the last return
+        self.value_returned = False
+        self.remapped = 0
+        self.spline: list[tuple[float, float, float]] = []  # control points of G5.2: x, y, weight
+        self.spline_order = 0
+        self.spline_end: tuple[float, float] | None = None  # P Q of the last G5
+        self.sticky: dict[str, float] = {}  # words that a cycle remembers
+        self.cycle_height: float | None = None  # where the first cycle began
+        self.finished = False
+        self.plane_before = 170  # before this block
+        self.saved: Any = None  # by M70 at this level of calls
+
+    # --- position
+
+    def to_space(self, place: list[float]) -> list[float]:
+        """From the program's frame to machine coordinates, without the tool's offset."""
+        moved = [p + s for p, s in zip(place, self.shift, strict=True)]
+        moved[0], moved[1] = self.turned(moved[0], moved[1], self.rotation)
+        return [p + o for p, o in zip(moved, self.origin, strict=True)]
+
+    def to_program(self, place: list[float]) -> list[float]:
+        """The inverse of `to_space`."""
+        moved = [p - o for p, o in zip(place, self.origin, strict=True)]
+        moved[0], moved[1] = self.turned(moved[0], moved[1], -self.rotation)
+        return [p - s for p, s in zip(moved, self.shift, strict=True)]
+
+    @staticmethod
+    def turned(x: float, y: float, angle: float) -> tuple[float, float]:
+        """A vector turned counterclockwise by degrees."""
+        if angle == 0.0:
+            return x, y
+        c, s = cos(radians(angle)), sin(radians(angle))
+        return x * c - y * s, x * s + y * c
+
+    def machine_position(self) -> list[float]:
+        """Positions of the machine's axes: the tool's offset included."""
+        return [s + t for s, t in zip(self.to_space(self.position), self.tool_offset, strict=True)]
+
+    def load_system(self) -> None:
+        """Take origin and rotation of the active system from the parameters; the machine stays."""
+        first = ORIGINS + STEP * self.system
+        here = self.to_space(self.position)
+        self.origin = self.stored(first)
+        self.rotation = self.numbered[first + 9]
+        self.position = self.to_program(here)
+
+    def set_shift(self, shift: list[float]) -> None:
+        """Put G92's offset in force; the machine stays."""
+        here = self.to_space(self.position)
+        self.shift = shift
+        self.position = self.to_program(here)
+
+    def stored(self, first: int) -> list[float]:
+        """Nine parameters of lengths and angles, mm and degrees."""
+        return [self.numbered[first + i] * (INCH if i in LINEAR else 1.0) for i in range(9)]
+
+    def store(self, first: int, place: list[float]) -> None:
+        """Put nine lengths and angles into parameters."""
+        for i, value in enumerate(place):
+            self.numbered[first + i] = value / INCH if i in LINEAR else value
+
+    def told_shift(self) -> list[float]:
+        return self.shift
+
+    def length(self, w: Any, letter: str, otherwise: float = 0.0) -> float:
+        """A word of a length, mm."""
+        return w[letter] * self.unit if letter in w else otherwise
+
+    def axis(self, w: Any, i: int) -> float:
+        """The word of an axis, mm or degrees."""
+        value: float = w[NINE[i]]
+        if i in LINEAR:
+            value *= self.unit
+            if i == 0 and self.diameter:
+                value /= 2.0
+        return value
+
+    # --- parameters
+
+    def index(self, value: float | None) -> int:
+        """A parameter's number. Raises Refusal."""
+        number = self.number_of(value)
+        if not 1 <= number <= LAST:
+            raise Refusal(F.NO_VARIABLE, number=number, hint=self.dialect.no_variable)
+        return number
+
+    def read(self, index: float | None) -> float:
+        number = self.index(index)
+        if POSITION <= number < POSITION + 9:
+            if self.compensating:
+                raise Refusal(F.UNDER_COMPENSATION, what=f"#{number}")
+            return self.shown(number - POSITION)
+        return self.numbered[number]
+
+    def shown(self, i: int) -> float:
+        """The present position on an axis, program units."""
+        return self.position[i] / self.unit if i in LINEAR else self.position[i]
+
+    def has_number(self, index: float) -> bool:
+        """EXISTS of a numbered parameter."""
+        number = round(index) if abs(index) < 1e9 else -1
+        return 1 <= number <= LAST
+
+    def check_write(self, number: int) -> None:
+        """Raises Refusal."""
+        if not 1 <= number <= LAST:
+            raise Refusal(F.NO_VARIABLE, number=number, hint=self.dialect.no_variable)
+        if number in READ_ONLY:
+            raise Refusal(F.READ_ONLY, what=f"#{number}", title="tool and position are only read")
+
+    def create(self, name: str) -> None:
+        """A name that a line sets can be read behind that, as 0."""
+        if name not in self.dialect.named:
+            (self.scope if self.is_local(name) else self.names).setdefault(name, 0.0)
+
+    # --- tools
+
+    def show_tool(self) -> None:
+        """Fill the parameters of the tool in the spindle."""
+        tool = self.slots[0]
+        data = (float(tool.id), *(v / INCH if i in LINEAR else v for i, v in enumerate(tool.offsets())),
+                tool.diameter / INCH, tool.p1, tool.p2, tool.p3)  # fmt: skip
+        self.numbered[TOOL_DATA : TOOL_DATA + len(data)] = data
+
+    def slot_of(self, number: int) -> int:
+        """The slot of a tool, 0 for tool 0. Raises Refusal."""
+        if number == 0:
+            return 0
+        for slot, tool in enumerate(self.slots):
+            if slot and tool.id == number:
+                return slot
+        raise Refusal(F.NO_TOOL, "t", tool=number)

@@ -1,0 +1,56 @@
+"""A line of LinuxCNC's language made clean: blanks gone, letters small, the last comment set aside.
+
+Source: 001 Format of a line, Comments; the canonical listing, sections 4 and 7.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from aircut.diagnostics import Refusal
+from aircut.diagnostics import faults as F
+from aircut.language.text import COMMENT, stray_fault
+
+LONGEST = 252  # bytes before the line end
+BLANKS = " \t\r\n\v\f"
+SMALL = {ord(c): None for c in BLANKS} | {c: c + 32 for c in range(ord("A"), ord("Z") + 1)}
+PIECES = re.compile(r"\(([^()]*)\)|(;.*)|([^();]+)|(.)", re.DOTALL)
+STRANGE = re.compile(r"[^ -z\x01]")
+
+
+class Clean(NamedTuple):
+    """A clean line. comment: the last one in parentheses, without them."""
+
+    code: str
+    comment: str | None = None
+
+
+def clean(text: str, length: int) -> Clean:
+    """Clean one line of this many bytes. Raises Refusal with the place in the line as written."""
+    if length > LONGEST:
+        raise Refusal(F.LINE_TOO_LONG, where=(0, 1), length=length, limit=LONGEST)
+    comment = None
+    if "(" in text or ";" in text or ")" in text:
+        code: list[str] = []
+        for piece in PIECES.finditer(text):
+            inner, rest, plain, stray = piece.groups()
+            if plain is not None:
+                code.append(plain.translate(SMALL))
+            elif inner is not None:
+                code.append(COMMENT)
+                comment = inner
+            elif stray is not None and rest is None:
+                at = piece.start()
+                raise Refusal(stray_fault(text, at), where=(at, at + 1))
+        joined = "".join(code)
+    else:
+        joined = text.translate(SMALL)
+    return Clean(joined, comment)
+
+
+def check(code: str) -> None:
+    """Refuse characters that no line holds outside comments. Raises Refusal."""
+    if strange := STRANGE.search(code):
+        character = f"“{strange[0]}”" if strange[0].isprintable() else f"character {ord(strange[0]):#04x}"
+        raise Refusal(F.ILLEGAL_CHARACTER, where=strange.span(), character=character, hint="")

@@ -1,0 +1,132 @@
+"""Tools of LinuxCNC's language: T, M6, M61, length offsets.
+
+Sources: 001; the canonical listing, section 10.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+from aircut.diagnostics import Refusal
+from aircut.diagnostics import faults as F
+from aircut.interpreter.linuxcnc.motion import wrong
+from aircut.interpreter.linuxcnc.state import NUMBERED_NINE, State
+from aircut.interpreter.state import EQUAL
+from aircut.interpreter.table import Code, Group, Order, Words
+from aircut.machine.tools import EMPTY
+
+
+def select_tool(m: State, w: Words) -> None:
+    """T. Raises Refusal."""
+    number = int(w["t"])
+    slot = m.slot_of(number)
+    m.selected_slot = slot
+    m.selected_tool = number
+    m.out.event("SELECT_TOOL", number)
+
+
+def change(m: State, w: Words) -> None:
+    """M6: load the selected tool. Raises Refusal."""
+    if m.compensating:
+        raise Refusal(F.UNDER_COMPENSATION, what="a tool change")
+    slot = max(m.selected_slot, 0)
+    m.out.event("START_CHANGE")
+    m.out.event("STOP_SPINDLE_TURNING", 0)
+    m.spindle = 5
+    m.out.event("CHANGE_TOOL", slot)
+    if slot:
+        m.slots[0] = m.slots[slot]
+    else:
+        m.slots[0] = EMPTY
+    load(m, slot)
+
+
+def load(m: State, slot: int) -> None:
+    m.slot = slot
+    m.tool = m.slots[slot].id
+    m.changed = m.slots[slot]
+    m.show_tool()
+    m.stale = True
+
+
+def declare(m: State, w: Words) -> None:
+    """M61: the tool Q is in the spindle. Raises Refusal."""
+    number = round(w["q"])
+    if abs(w["q"] - number) > EQUAL or number < 0:
+        raise Refusal(F.BAD_VALUE, "q", word="Q", value=w["q"], wanted="a tool's number")
+    slot = m.slot_of(number)
+    m.out.event("CHANGE_TOOL_NUMBER", slot)
+    m.slot = slot
+    m.tool = number
+    m.stale = True
+
+
+def put_offset(m: State, offset: list[float]) -> None:
+    """Put a tool's offset in force: the position reads otherwise, nothing moves."""
+    m.position = [p + b - n for p, b, n in zip(m.position, m.tool_offset, offset, strict=True)]
+    m.tool_offset = offset
+    m.out.event("USE_TOOL_LENGTH_OFFSET", *offset)
+
+
+def bar(m: State) -> None:
+    if m.compensating:
+        raise Refusal(F.UNDER_COMPENSATION, what="another tool length")
+
+
+def of_tool(m: State, w: Words) -> list[float]:
+    """Offsets of the tool that H names; without H, of the tool in the spindle. Raises Refusal."""
+    if "h" not in w:
+        return m.slots[0].offsets()
+    if w["h"] < 0:
+        raise Refusal(F.NO_TOOL, "h", tool=int(w["h"]))
+    return m.slots[m.slot_of(int(w["h"]))].offsets()
+
+
+def tool_length(m: State, w: Words) -> None:
+    """G43. Raises Refusal."""
+    bar(m)
+    m.length_on = True
+    put_offset(m, of_tool(m, w))
+
+
+def dynamic_length(m: State, w: Words) -> None:
+    """G43.1: offsets as given. Raises Refusal."""
+    bar(m)
+    m.length_on = True
+    offset = m.tool_offset[:]
+    for i, letter in NUMBERED_NINE:
+        if letter in w:
+            offset[i] = m.axis(w, i)
+    put_offset(m, offset)
+
+
+def added_length(m: State, w: Words) -> None:
+    """G43.2: a tool's offset on top of that in force. Raises Refusal."""
+    bar(m)
+    if any(letter in w for _, letter in NUMBERED_NINE):
+        raise Refusal(F.NO_TOOL, "h", tool=-1)
+    if "h" not in w:
+        raise wrong("G43.2 needs H")
+    m.length_on = True
+    put_offset(m, [a + b for a, b in zip(m.tool_offset, of_tool(m, w), strict=True)])
+
+
+def no_length(m: State, w: Words) -> None:
+    """G49. Raises Refusal."""
+    bar(m)
+    m.length_on = False
+    put_offset(m, [0.0] * 9)
+
+
+length = partial(Code, group=Group.TOOL_LENGTH, order=Order.TOOL_LENGTH)
+
+CODES = (
+    Code("M6", "Change the tool", change, Group.TOOL, Order.TOOL_CHANGE),
+    Code("M61", "Declare the tool", declare, Group.TOOL, Order.TOOL_CHANGE, takes="q", needs="q"),
+    length("G43", "Tool length", tool_length, takes="h"),
+    length("G43.1", "Tool length as given", dynamic_length, axes=True),
+    length("G43.2", "Tool length added", added_length, axes=True, takes="h"),
+    length("G49", "No tool length", no_length),
+)
+
+ITEMS = (Code("T", "Tool that the next change loads", select_tool, Group(0), Order.TOOL),)
