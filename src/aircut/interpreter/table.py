@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from aircut.machine.tools import Tool
 
 Words = Mapping[str, Any]  # letter -> value, of one block
-#: What carries a code out: a function, or a generator of requests where it asks the world.
-Handler = Callable[["State", Words], "Generator[Request, Any, None] | None"]
+#: What carries a code out on its dialect's State: a function, or a generator of requests where it asks the world.
+Handler = Callable[[Any, Words], "Generator[Request, Any, None] | None"]
 
 AXES = "xyzabc"
 POLAR_WORDS = "@^"  # radius and angle: axis words too, of motion alone
@@ -152,7 +152,7 @@ class NamedParameter(NamedTuple):
 
     name: str
     title: str
-    read: Callable[[State], float | None]
+    read: Callable[[Any], float | None]
 
 
 class CutterRules(NamedTuple):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
@@ -27,7 +28,7 @@ def arc_tangent(y: float, x: float) -> float:
     return math.degrees(math.atan2(y, x))
 
 
-OWN = {"acos": arc_cosine, "asin": arc_sine, "atan": arc_tangent}
+OWN: dict[str, Callable[..., float]] = {"acos": arc_cosine, "asin": arc_sine, "atan": arc_tangent}
 OPERATORS = tuple(operator for operator in HOUSE_OPERATORS if operator.name not in "&|^")
 FUNCTIONS = tuple(row._replace(run=OWN.get(row.name, row.run)) for row in HOUSE_FUNCTIONS)
 OPERATOR_ROWS = {operator.name: operator for operator in OPERATORS}

@@ -167,7 +167,7 @@ def parse_o(code: str) -> OLine | None:
 def arguments(rest: str, least: int, most: int) -> Callable[..., tuple[float, ...]]:
     """The function of the values in brackets behind a keyword. Raises Refusal."""
     parser = ValueParser(rest)
-    nodes = []
+    nodes: list[Expression] = []
     while len(nodes) < most and rest.startswith("[", parser.at):
         nodes.append(parser.brackets())
     if len(nodes) < least:

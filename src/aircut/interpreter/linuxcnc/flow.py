@@ -15,6 +15,7 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.linuxcnc.arranging import whole
 from aircut.interpreter.linuxcnc.blocks import OLine, arguments
+from aircut.interpreter.linuxcnc.saving import restore_call
 from aircut.interpreter.linuxcnc.state import LOCALS
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ class Level(NamedTuple):
     label: str  # of what was called
     fanuc: bool
     saved: Any  # what M70 saved for the caller
-    count: int  # passes still to do, with this one
+    passes: int  # still to do, with this one
 
 
 @dataclass
@@ -318,7 +319,7 @@ class Flow:
         """Go back to the caller."""
         run, m = self.run, self.run.state
         level = self.stack.pop()
-        run.restore_call(m)
+        restore_call(run)
         if level.locals is not None:
             m.numbered[1 : LOCALS + 1] = level.locals
             m.scope = level.scope
@@ -342,8 +343,8 @@ class Flow:
         level = self.stack[-1]
         if not level.fanuc:
             raise refuse("a subroutine of CALL ends with ENDSUB")
-        if level.count > 1:
-            self.stack[-1] = level._replace(count=level.count - 1)
+        if level.passes > 1:
+            self.stack[-1] = level._replace(passes=level.passes - 1)
             mark = self.marks[level.label]
             self.run.jump(mark.text, mark.line + 1)
         else:

@@ -19,7 +19,6 @@ from aircut.interpreter.linuxcnc.arranging import Steps, arrange, check_values, 
 from aircut.interpreter.linuxcnc.blocks import Block, OLine, check_number, parse, parse_o
 from aircut.interpreter.linuxcnc.comments import say
 from aircut.interpreter.linuxcnc.flow import Flow
-from aircut.interpreter.linuxcnc.saving import restore_call
 from aircut.interpreter.linuxcnc.state import State
 from aircut.interpreter.linuxcnc.text import check, clean
 from aircut.interpreter.requests import Request
@@ -86,7 +85,6 @@ class Interpreter(Run):
         self.found: dict[str, Text | None] = {}
         self.repeated = 0
         self.modal = dialect.codes["g80"]
-        self.restore_call = restore_call
 
     # --- diagnostics
 
@@ -246,6 +244,10 @@ class Interpreter(Run):
         if m.transfer is not None:
             transfer, m.transfer = m.transfer, None
             transfer(self)
+
+    def carry_out(self, names: list[str], words: dict[str, float]) -> None:
+        """Run codes that no line has written. Raises Refusal."""
+        self.perform(arrange(names, words, self.modal, self.dialect), words)
 
     # --- ends
 

@@ -16,11 +16,11 @@ SYSTEMS = (540, 550, 560, 570, 580, 590, 591, 592, 593)
 
 
 def flag(name: str, title: str, read: Callable[[State], object]) -> NamedParameter:
-    return NamedParameter(name, title, lambda m: 1.0 if read(m) else 0.0)  # type: ignore[arg-type]
+    return NamedParameter(name, title, lambda m: 1.0 if read(m) else 0.0)
 
 
 def value(name: str, title: str, read: Callable[[State], float]) -> NamedParameter:
-    return NamedParameter(name, title, lambda m: float(read(m)))  # type: ignore[arg-type]
+    return NamedParameter(name, title, lambda m: float(read(m)))
 
 
 def code(name: str) -> float:
@@ -75,9 +75,9 @@ NAMED = (
     value("_current_pocket", "its pocket", lambda m: m.slots[m.slot].slot if m.slot < len(m.slots) else 0),
     value("_selected_tool", "tool of T", lambda m: m.selected_tool),
     value("_selected_pocket", "its slot", lambda m: m.selected_slot),
-    *(NamedParameter(f"_{a}", f"position {a.upper()}", partial(shown, i)) for i, a in enumerate(NINE)),  # type: ignore[arg-type]
+    *(NamedParameter(f"_{a}", f"position {a.upper()}", partial(shown, i)) for i, a in enumerate(NINE)),
     *(
-        NamedParameter(f"_abs_{a}", f"machine position {a.upper()}", partial(machine, i))  # type: ignore[arg-type]
+        NamedParameter(f"_abs_{a}", f"machine position {a.upper()}", partial(machine, i))
         for i, a in enumerate(NINE[:6])
     ),
     value("_value", "of the last return", lambda m: m.value),
