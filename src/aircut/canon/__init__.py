@@ -2,7 +2,19 @@
 
 from aircut.canon.commands import COMMANDS, Command
 from aircut.canon.record import CHUNK, Chunk, Event, Recorder, Recording
-from aircut.canon.toolpath import BY_HAND, COLUMNS, EXACT_PATH, EXACT_STOP, INVERSE_TIME, PART, ROW, TIP, TOLD, Kind, Toolpath
+from aircut.canon.toolpath import (
+    BY_HAND,
+    COLUMNS,
+    EXACT_PATH,
+    EXACT_STOP,
+    INVERSE_TIME,
+    PART,
+    ROW,
+    TIP,
+    TOLD,
+    Kind,
+    Toolpath,
+)
 
 __all__ = [
     "BY_HAND",

@@ -12,8 +12,8 @@ from aircut.interpreter.table import Code, Group, Order, Words
 
 def off(m: State, w: Words) -> None:
     """G40."""
-    m.arc_refused = m.compensating != 0
-    m.compensating = 0
+    m.arc_refused = m.cutter != 0
+    m.cutter = 0
     said(m, "cutter radius compensation off")
 
 

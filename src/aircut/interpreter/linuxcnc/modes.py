@@ -111,7 +111,7 @@ def orient(m: State, w: Words) -> None:
 
 def set_plane(code: int, m: State, w: Words) -> None:
     """G17 to G19.1. Raises Refusal."""
-    if m.compensating and code != m.plane_code:
+    if m.cutter and code != m.plane_code:
         raise Refusal(F.UNDER_COMPENSATION, what="another plane")
     m.plane_code = code
     m.plane, name = PLANES[code]
@@ -152,7 +152,7 @@ def set_diameter(diameter: bool, m: State, w: Words) -> None:
 
 def set_retract(mode: int, m: State, w: Words) -> None:
     """G98, G99. Raises Refusal."""
-    if m.compensating:
+    if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="G98 or G99")
     m.retract = mode
     said(m, f"retract mode set to {'old_z' if mode == 98 else 'r_plane'}")
@@ -163,7 +163,7 @@ def set_retract(mode: int, m: State, w: Words) -> None:
 
 def exact(mode: int, m: State, w: Words) -> None:
     """G61, G61.1. Raises Refusal."""
-    if m.compensating:
+    if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="G61")
     m.path_mode = mode
     m.flags = EXACT_PATH if mode == 61 else EXACT_STOP
@@ -172,7 +172,7 @@ def exact(mode: int, m: State, w: Words) -> None:
 
 def blending(m: State, w: Words) -> None:
     """G64: P the tolerance of blending, Q of thinning. Raises Refusal."""
-    if m.compensating:
+    if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="G64")
     m.path_mode = 64
     m.flags = 0
@@ -221,7 +221,7 @@ def by_p(feed: bool, m: State, w: Words) -> None:
 
 
 def barred(m: State) -> None:
-    if m.compensating:
+    if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="M48 to M53")
 
 

@@ -50,7 +50,7 @@ def machine_goal(m: State, w: Words) -> list[float]:
         raise wrong("G53 is not possible under G91")
     if "@" in w or "^" in w:
         raise Refusal(F.UNUSED_WORD, "@", word="@ or ^")
-    if m.compensating:
+    if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="G53")
     space = m.to_space(m.position)
     for i, letter in NUMBERED_NINE:
@@ -180,12 +180,17 @@ def arc(turn: int, m: State, w: Words) -> None:
     length = hypot(around, end[across] - m.position[across]) / m.unit
     speed = speed_of(m, w, "G2", length)
     space = m.to_space(end)
-    middle = end[:]
-    middle[u], middle[v] = center
-    turned = m.to_space(middle)
-    m.way.arc(m, space, (turned[u], turned[v]), turn * turns, speed, feed_flags(m))
+    m.way.arc(m, space, center_in_space(m, u, v, center), turn * turns, speed, feed_flags(m))
     m.position = end
     m.reached = space
+
+
+def center_in_space(m: State, u: int, v: int, center: tuple[float, float]) -> tuple[float, float]:
+    """The center in machine coordinates; only in the XY plane can an arc follow a rotation about Z."""
+    shifted = (center[0] + m.shift[u], center[1] + m.shift[v])
+    if (u, v) == (0, 1):
+        shifted = m.turned(*shifted, m.rotation)
+    return shifted[0] + m.origin[u], shifted[1] + m.origin[v]
 
 
 def by_center(
@@ -234,14 +239,14 @@ def cancel(m: State, w: Words) -> None:
 
 def machine_frame(m: State, w: Words) -> None:
     """G53: the axis words of this block are machine coordinates. Raises Refusal."""
-    if m.compensating:
+    if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="G53")
     m.machine_frame = True
 
 
 def probe(m: State, w: Words) -> None:
     """G38.2 to G38.5: with nothing there, the probe trips at the target. Raises Refusal."""
-    if m.compensating:
+    if m.cutter:
         raise Refusal(F.PROBE_COMPENSATION)
     if m.feed_mode == 95:
         raise wrong("G38 is not possible under G95")
@@ -266,7 +271,7 @@ def probe(m: State, w: Words) -> None:
 
 def go_home(stored: int, m: State, w: Words) -> None:
     """G28, G30: to the point given, then to the stored point, in the named axes if any are. Raises Refusal."""
-    if m.compensating:
+    if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="G28 or G30")
     if "@" in w or "^" in w:
         raise Refusal(F.UNUSED_WORD, "@", word="@ or ^")
@@ -281,7 +286,7 @@ def go_home(stored: int, m: State, w: Words) -> None:
 
 def store_home(stored: int, m: State, w: Words) -> None:
     """G28.1, G30.1: remember where the machine is. Raises Refusal."""
-    if m.compensating:
+    if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="G28.1")
     m.store(stored, m.machine_position())
 

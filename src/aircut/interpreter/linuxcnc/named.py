@@ -44,7 +44,7 @@ NAMED = (
     value("_line", "line of the file", lambda m: m.line),
     value("_motion_mode", "motion mode, times ten", lambda m: code(m.motion_name)),
     value("_plane", "plane, times ten", lambda m: m.plane_code),
-    value("_ccomp", "cutter compensation, times ten", lambda m: 10 * (m.compensating or 40)),
+    value("_ccomp", "cutter compensation, times ten", lambda m: 10 * (m.cutter or 40)),
     flag("_metric", "G21", lambda m: m.unit == 1.0),
     flag("_imperial", "G20", lambda m: m.unit != 1.0),
     flag("_absolute", "G90", lambda m: m.absolute),

@@ -34,7 +34,7 @@ def tell_shift(m: State) -> None:
 
 def select(system: int, m: State, w: Words) -> None:
     """G54 to G59.3. Raises Refusal."""
-    if m.compensating:
+    if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="another work system")
     if system == m.system:
         said(m, "continuing to use same coordinate system")
@@ -53,7 +53,7 @@ def shift_of(m: State) -> None:
 
 
 def bar_shift(m: State) -> None:
-    if m.compensating:
+    if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="an axis offset")
 
 
@@ -129,7 +129,7 @@ def system_of(m: State, w: Words) -> int:
 def set_system(here: bool, m: State, w: Words) -> None:
     """G10 L2: origin and rotation as given; L20: so that the present position reads as given. Raises Refusal."""
     system = system_of(m, w)
-    if m.compensating and system == m.system:
+    if m.cutter and system == m.system:
         raise Refusal(F.UNDER_COMPENSATION, what="G10 on the active system")
     first = ORIGINS + STEP * system
     if "r" in w:

@@ -16,7 +16,7 @@ from aircut.interpreter.table import Code, Group, Order, Words
 
 
 def bar(m: State) -> None:
-    if m.compensating:
+    if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="M62 to M68")
 
 

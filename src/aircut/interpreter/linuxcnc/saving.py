@@ -34,7 +34,7 @@ def snapshot(m: State, returning: bool = False) -> Saved:
     """The modes now."""
     modes = {
         "plane": f"g{m.plane_code // 10}" + (".1" if m.plane_code % 10 else ""),
-        "cutter": f"g{m.compensating or 40}",
+        "cutter": f"g{m.cutter or 40}",
         "distance": "g90" if m.absolute else "g91",
         "feed mode": f"g{m.feed_mode}",
         "system": SYSTEM_CODES[m.system],

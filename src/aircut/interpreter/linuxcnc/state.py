@@ -65,7 +65,7 @@ class State(house.State):
         self.plane_code = 170
         self.path_mode = 64
         self.css = False
-        self.compensating = 0  # 0, 41, 42
+        self.cutter = 0  # 0, 41, 42
         self.arc_refused = False  # right after G40
         self.length_on = False
         self.adaptive = False
@@ -159,7 +159,7 @@ class State(house.State):
     def read(self, index: float | None) -> float:
         number = self.index(index)
         if POSITION <= number < POSITION + 9:
-            if self.compensating:
+            if self.cutter:
                 raise Refusal(F.UNDER_COMPENSATION, what=f"#{number}")
             return self.shown(number - POSITION)
         return self.numbered[number]

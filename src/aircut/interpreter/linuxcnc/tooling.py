@@ -27,7 +27,7 @@ def select_tool(m: State, w: Words) -> None:
 
 def change(m: State, w: Words) -> None:
     """M6: load the selected tool. Raises Refusal."""
-    if m.compensating:
+    if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="a tool change")
     slot = max(m.selected_slot, 0)
     m.out.event("START_CHANGE")
@@ -69,7 +69,7 @@ def put_offset(m: State, offset: list[float]) -> None:
 
 
 def bar(m: State) -> None:
-    if m.compensating:
+    if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="another tool length")
 
 
