@@ -19,7 +19,7 @@ from aircut.canon.record import Events
 from aircut.canon.toolpath import Extents
 from aircut.diagnostics import Diagnostic, Severity
 from aircut.interpreter.rotary import displayed
-from aircut.interpreter.running import Limits, Run, Settings
+from aircut.interpreter.running import Limits, Mode, Run, Settings, Start
 from aircut.machine import Machine, Tool
 from aircut.machine import load as load_machine
 from aircut.source import Source
@@ -61,6 +61,7 @@ class Result:
     toolpath: the motion, as columns.    events: all else, in order.
     diagnostics: what went wrong.    variables: numbered variables that have a value,
     and named ones.    state: the modes and positions at the end.
+    arrival: how a run from a line came there (else None).    stop: where it was stopped, if it was.
     """
 
     def __init__(self, recording: Recording, interpreter: Run) -> None:
@@ -69,6 +70,8 @@ class Result:
         self.diagnostics: list[Diagnostic] = list(interpreter.diagnostics)
         self.sources: dict[str, Source] = {name: interpreter.units[name].source for name in self.files}
         self.optional_stop = interpreter.settings.optional_stop
+        self.arrival = interpreter.arrival
+        self.stop = interpreter.stop
         self._interpreter = interpreter
 
     def __repr__(self) -> str:
@@ -199,10 +202,13 @@ class Program:
         """An interpreter of this program.
 
         machine: a Machine, or the path of a machine's folder; None for the built-in one.
-        settings: as in interpreter.Settings. Raises MachineError for a folder that cannot be used.
+        settings: as in interpreter.running.Settings; from_line=N starts at that line.
+        Raises MachineError for a folder that cannot be used.
         """
         if isinstance(machine, str | Path):
             machine = load_machine(Path(machine))
+        if "from_line" in settings:
+            settings |= {"start": Start(settings.pop("from_line")), "mode": Mode.FROM_LINE}
         made = machine or dialects.machine(self.dialect)
         return self.dialect.interpreter(self.source, self.dialect, made, Settings(**settings))
 
@@ -217,7 +223,7 @@ class Program:
         from aircut import rules
 
         policy = rules.Policy.of(Path(self.source.name), ignore)
-        interpreter = self.interpreter(machine, keep_going=True, **settings)
+        interpreter = self.interpreter(machine, **{"keep_going": True, "mode": Mode.ANALYSIS} | settings)
         for _ in rules.checked(interpreter, policy):
             pass
         return interpreter.diagnostics

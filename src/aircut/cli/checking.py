@@ -12,7 +12,7 @@ import click
 from aircut import rules
 from aircut.cli import common
 from aircut.diagnostics import Diagnostic, Severity
-from aircut.interpreter.running import Run
+from aircut.interpreter.running import Mode, Run
 
 
 def check(files: Sequence[Path], style: str, output: Path | None, options: dict[str, Any]) -> int:
@@ -20,7 +20,7 @@ def check(files: Sequence[Path], style: str, output: Path | None, options: dict[
     diagnostics: list[Diagnostic] = []
     interpreters: list[Run] = []
     for file in files:
-        made = common.interpreter(file, options, common.machine(options), keep_going=True, keeps_moves=False)
+        made = common.interpreter(file, options, common.machine(options), True, False, Mode.ANALYSIS)
         if isinstance(made, Diagnostic):
             diagnostics.append(made)
             continue

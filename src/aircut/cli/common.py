@@ -14,9 +14,9 @@ import click
 from aircut import dialects
 from aircut.diagnostics import Diagnostic, Severity, Span
 from aircut.diagnostics import faults as F
-from aircut.interpreter.running import Limits, Run, Settings
+from aircut.interpreter.running import Limits, Mode, Run, Settings, Start
 from aircut.interpreter.table import Dialect
-from aircut.machine import Machine, MachineError, load, memory
+from aircut.machine import Machine, MachineError, load, memory, stops
 from aircut.rules.policy import Policy, RulesError
 from aircut.source import Source
 
@@ -56,7 +56,9 @@ def machine(options: dict[str, Any]) -> Machine:
     return made
 
 
-def settings(options: dict[str, Any], keep_going: bool, keeps_moves: bool) -> Settings:
+def settings(
+    options: dict[str, Any], keep_going: bool, keeps_moves: bool, mode: Mode = Mode.PROGRAM, start: Start | None = None
+) -> Settings:
     """How to run."""
     moves = options["max_moves"]
     if moves is None and keeps_moves:
@@ -64,11 +66,19 @@ def settings(options: dict[str, Any], keep_going: bool, keeps_moves: bool) -> Se
 
         moves = MOVES_KEPT
     limits = Limits(blocks=options["max_blocks"], moves=moves)
-    return Settings(options["block_delete"], options["optional_stop"], keep_going, limits=limits)
+    stop_line = options.get("stop_line") or 0
+    skip, optional = options["block_delete"], options["optional_stop"]
+    return Settings(skip, optional, keep_going, limits=limits, mode=mode, start=start, stop_line=stop_line)
 
 
 def interpreter(
-    file: Path, options: dict[str, Any], made: Machine, keep_going: bool, keeps_moves: bool
+    file: Path,
+    options: dict[str, Any],
+    made: Machine,
+    keep_going: bool,
+    keeps_moves: bool,
+    mode: Mode = Mode.PROGRAM,
+    start: Start | None = None,
 ) -> Run | Diagnostic:
     """An interpreter of the file, or why there is none. Raises click.UsageError for an unknown dialect."""
     language = dialect(options)
@@ -76,7 +86,10 @@ def interpreter(
         source = Source.load(file)
     except OSError as error:
         return F.CANNOT_READ.at(str(file), Span(), reason=error.strerror or str(error))
-    return language.interpreter(source, language, made, settings(options, keep_going, keeps_moves))
+    chosen = settings(options, keep_going, keeps_moves, mode, start)
+    if (start or chosen.stop_line) and not language.interpreter.starts_midway:
+        raise click.UsageError(f"programs of the {language.name} dialect start at their first line in this version")
+    return language.interpreter(source, language, made, chosen)
 
 
 def policy(file: Path, options: dict[str, Any]) -> Policy:
@@ -101,6 +114,7 @@ def remember(options: dict[str, Any], made: Machine, finished: Run) -> None:
             tools = finished.state.tools
             changed = {id: tool for id, tool in tools.items() if made.library.get(id) != tool}
             memory.remember(made.folder, kept, changed)
+            stops.keep(made.folder, finished.stop)
     except (OSError, MachineError) as error:
         raise click.ClickException(f"cannot store the machine's variables: {error}") from None
 

@@ -67,13 +67,29 @@ def cli() -> None:
 
 
 @cli.command()
-@click.argument("file", type=FILE)
+@click.argument("file", type=FILE, required=False)
 @machine_options
 @world_options
+@click.option("--mdi", "typed", multiple=True, metavar="COMMAND", help="Run this instead of a file; repeatable.")
+@click.option("--as-macro", is_flag=True, help="Run the file as a macro: it may end without M2 or M30.")
+@click.option(
+    "--from-line",
+    type=click.IntRange(1),
+    metavar="N",
+    help="Start at line N: all before it is interpreted for its state, without motion.",
+)
+@click.option("--resume", is_flag=True, help="Go on where the last run on the machine was stopped.")
+@click.option("--stop-line", type=click.IntRange(1), metavar="N", help="Stop before line N, to be resumed.")
 @click.option("--format", "style", type=click.Choice(FORMATS), default="summary", show_default=True)
 @click.option("-o", "--output", type=FILE, help="Write here instead of to the terminal.")
-def run(file: Path, style: str, output: Path | None, **options: Any) -> None:
+def run(file: Path | None, style: str, output: Path | None, typed: tuple[str, ...], **options: Any) -> None:
     """Run a program on the virtual machine and tell what it does."""
+    if (file is None) == (not typed):
+        raise click.UsageError("give either a FILE or --mdi COMMAND")
+    if file is None:
+        from aircut.cli import mdi
+
+        sys.exit(mdi.commands(typed, options))
     from aircut.cli import running
 
     sys.exit(running.run(file, style, output, options))
@@ -132,6 +148,16 @@ def plot(file: Path, output: Path, **options: Any) -> None:
     from aircut.cli import plotting
 
     sys.exit(plotting.plot(file, output, options))
+
+
+@cli.command("mdi")
+@machine_options
+@world_options
+def mdi_(**options: Any) -> None:
+    """Type commands by hand: modes and variables stay from one to the next."""
+    from aircut.cli import mdi
+
+    sys.exit(mdi.converse(options))
 
 
 KEY = click.option("--key", metavar="KEY", help="Key of the macro; else AIRCUT_KEY, else asked for.")

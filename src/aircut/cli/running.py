@@ -13,7 +13,8 @@ from aircut import rules
 from aircut.canon import Recording
 from aircut.cli import common
 from aircut.diagnostics import Diagnostic
-from aircut.interpreter.running import Run
+from aircut.interpreter.running import Mode, Run, Start
+from aircut.machine import Machine, MachineError, stops
 
 if TYPE_CHECKING:
     from aircut.controller import Simulation
@@ -22,7 +23,8 @@ if TYPE_CHECKING:
 def run(file: Path, style: str, output: Path | None, options: dict[str, Any]) -> int:
     """Run a program and report in the wanted style; returns the exit status."""
     machine = common.machine(options)
-    made = common.interpreter(file, options, machine, keep_going=False, keeps_moves=style != "canon")
+    mode, start = beginning(options, machine, file)
+    made = common.interpreter(file, options, machine, False, style != "canon", mode, start)
     if isinstance(made, Diagnostic):
         common.show([made], lambda *_: "", sys.stderr)
         return 1
@@ -42,6 +44,27 @@ def run(file: Path, style: str, output: Path | None, options: dict[str, Any]) ->
         common.show(made.diagnostics, common.lines_of(made), sys.stderr)
     common.remember(options, machine, made)
     return int(made.failed)
+
+
+def beginning(options: dict[str, Any], machine: Machine, file: Path) -> tuple[Mode, Start | None]:
+    """What to compile, and where motion starts. Raises click.UsageError."""
+    line = options["from_line"]
+    if not options["resume"]:
+        if line is not None:
+            return Mode.FROM_LINE, Start(line)
+        return (Mode.MACRO if options["as_macro"] else Mode.PROGRAM), None
+    if machine.folder is None:
+        raise click.UsageError("--resume needs a machine's folder (--machine), where the stop is remembered")
+    try:
+        stop = stops.last(machine.folder)
+    except MachineError as error:
+        raise click.UsageError(str(error)) from None
+    if stop is None or Path(stop.program).resolve() != file.resolve():
+        what = f"{stop.program} was stopped there" if stop else "no program was stopped there"
+        raise click.UsageError(f"there is no stop of {file} on {machine.folder} to resume from: {what}")
+    if line is not None:
+        return Mode.RESUME_FROM_LINE, Start(line, 0, stop)
+    return Mode.RESUME, Start(stop.line, stop.moves, stop)
 
 
 def simulated(made: Run, options: dict[str, Any]) -> Simulation | None:

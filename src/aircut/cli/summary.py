@@ -68,6 +68,7 @@ def lines(result: Result, numbers: dict[str, Any]) -> list[tuple[str, str]]:
         rows.append(("stops", f"{counts['stops']:,}, waiting for the operator"))
     if numbers["dwell_seconds"]:
         rows.append(("dwell", f"{numbers['dwell_seconds']:g} s"))
+    rows += midway(result)
     rows += [
         ("message", markup.plain(markup.parse(message.text, result.tool, tags=message.kind in TAGGED)))
         for message in result.messages
@@ -75,3 +76,22 @@ def lines(result: Result, numbers: dict[str, Any]) -> list[tuple[str, str]]:
     ]
     rows.append(("faults", totals(result.diagnostics) or "none"))
     return rows
+
+
+def midway(result: Result) -> list[tuple[str, str]]:
+    """Where the run began and ended, if not with the program."""
+    rows = []
+    if result.arrival is not None:
+        start = result.arrival
+        rows.append(("start", f"line {start.line}, at {place(start.place)}, with {' '.join(start.modes)} {start.told}"))
+        way = ", ".join(f"{code} {place(point)}" for code, point in start.approach)
+        rows.append(("approach", f"{way or 'none'} (machine coordinates)"))
+    if result.stop is not None:
+        rows.append(("stop", f"before line {result.stop.line}, at {place(result.stop.place)} (machine coordinates)"))
+    return rows
+
+
+def place(point: tuple[float, ...]) -> str:
+    """A point for people; rotary axes only where they are not at zero."""
+    named = zip("XYZABC", point, strict=True)
+    return " ".join(f"{axis}{round(value, 3) + 0.0:g}" for axis, value in named if axis in "XYZ" or value)

@@ -7,13 +7,13 @@ dwells and waits; acceleration is the planner's affair.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from math import dist
 from typing import Any, ClassVar, NamedTuple
 
 from aircut.canon import ROW, Chunk, Kind
 from aircut.controller.world import Input, World
-from aircut.interpreter.requests import Answer, Ask, Inputs, Output, Pause, Plc, Probe, Probed, Wait, Waited
+from aircut.interpreter.requests import Answer, Ask, Inputs, Output, Pause, Plc, Probe, Probed, Request, Wait, Waited
 from aircut.interpreter.running import Run
 from aircut.machine.tools import EMPTY
 
@@ -47,9 +47,9 @@ class Simulation:
         self.read: dict[tuple[int, bool], int] = {}  # readings of inputs scripted in sequence
         self.replies = iter(world.file.operator)
 
-    def run(self) -> Iterator[Chunk]:
-        """Run to the end; yields motion and events as they come."""
-        talk = self.interpreter.execute()
+    def run(self, talk: Generator[Chunk | Request, Any, None] | None = None) -> Iterator[Chunk]:
+        """Run to the end, or (with `talk`) one command of a session; yields motion and events as they come."""
+        talk = talk or self.interpreter.execute()
         reply: Any = None
         while True:
             try:

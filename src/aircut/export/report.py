@@ -73,6 +73,19 @@ def moves_linear(result: Result) -> Any:
     return (np.abs(step) > 1e-7).any(axis=1) | (toolpath.kind == Kind.ARC)
 
 
+def named(place: tuple[float, ...]) -> dict[str, float]:
+    return dict(zip(AXES, place, strict=True))
+
+
+def started(result: Result) -> dict[str, Any] | None:
+    """Where a run from a line began: the place in the program's frame, the approach in machine coordinates."""
+    arrival = result.arrival
+    if arrival is None:
+        return None
+    approach = [{"code": code, "machine": named(place)} for code, place in arrival.approach]
+    return {"line": arrival.line, "position": named(arrival.place), "modes": arrival.modes, "approach": approach}
+
+
 def to_json(result: Result, program: str, dialect: str) -> str:
     """The JSON report of a run."""
     report = {
@@ -85,5 +98,7 @@ def to_json(result: Result, program: str, dialect: str) -> str:
         "messages": [{"text": m.text, "file": m.file, "line": m.line} for m in result.messages],
         "diagnostics": [as_dict(d) for d in result.diagnostics],
         "state": result.state,
+        "start": started(result),
+        "stop": result.stop and {"line": result.stop.line, "machine": named(result.stop.place)},
     }
     return json.dumps(report, indent=2) + "\n"

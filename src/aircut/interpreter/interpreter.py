@@ -17,7 +17,7 @@ from aircut.interpreter.calls import ARGUMENTS, Call, Return
 from aircut.interpreter.compiling import FAILURES, explain
 from aircut.interpreter.midway import Midway
 from aircut.interpreter.requests import Request
-from aircut.interpreter.running import WHOLE, Mode, Run, Settings, Stop, Stopped
+from aircut.interpreter.running import WHOLE, Mode, Run, Settings, Stopped
 from aircut.interpreter.state import State
 from aircut.interpreter.table import Code, Dialect, Group, Words
 from aircut.interpreter.tooling import TOOL_CHANGE
@@ -28,6 +28,7 @@ from aircut.language.blocks import Block, parse
 from aircut.language.expressions import Number
 from aircut.language.structure import Routine
 from aircut.machine import INSTALLED, Machine
+from aircut.machine.stops import Stop
 from aircut.source import Source
 
 FULL = CHUNK * ROW.size
@@ -56,6 +57,8 @@ class Level(NamedTuple):
 
 class Interpreter(Run):
     """Runs one program on one machine. Iterate `run()`; then read `state` and `diagnostics`."""
+
+    starts_midway = True
 
     def __init__(self, source: Source, dialect: Dialect, machine: Machine, settings: Settings | None = None) -> None:
         super().__init__(source, dialect, machine, settings)

@@ -76,7 +76,9 @@ class Midway:
                 path.record_line(m, kind, end, speed, m.flags)
                 approach.append((code, tuple(end)))
                 here = end
-        return Arrival(line, tuple(m.position), tuple(approach))
+        modes = tuple(row.name for row in m.modal.values())
+        told = f"T{m.tool} F{m.feed / m.unit:g} S{m.speed:g}"
+        return Arrival(line, tuple(m.position), modes, told, tuple(approach))
 
 
 def tell(m: State) -> None:

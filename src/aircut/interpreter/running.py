@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from aircut.canon import Chunk
 from aircut.diagnostics import Diagnostic, Severity
 from aircut.interpreter.requests import Request
+from aircut.machine.stops import Stop
 
 if TYPE_CHECKING:
     from aircut.interpreter.auxiliary import End
@@ -45,15 +46,6 @@ class Mode(IntEnum):
 WHOLE = (Mode.PROGRAM, Mode.ANALYSIS)  # what should end as a program does
 
 
-class Stop(NamedTuple):
-    """Where a run was stopped."""
-
-    program: str
-    line: int  # of the main program, from 1
-    moves: int  # made before it, since the program's start
-    place: tuple[float, ...]  # machine coordinates of the controlled point, mm and degrees
-
-
 class Start(NamedTuple):
     """Where motion starts, in place of the first line."""
 
@@ -67,6 +59,8 @@ class Arrival(NamedTuple):
 
     line: int
     place: tuple[float, ...]  # where the program continues: its own frame, mm and degrees
+    modes: tuple[str, ...]  # codes in force
+    told: str  # what else is in force, for people
     approach: tuple[tuple[str, tuple[float, ...]], ...]  # code and machine coordinates
 
 
@@ -93,6 +87,8 @@ class Run:
     files: names of the texts met, in the order of their indices; units: by name,
     each with its `source`. unit: the one being run; line: in it, from 0.
     """
+
+    starts_midway = False  # it can start from a line, stop at one, and run MDI commands
 
     state: State
     units: dict[str, Any]

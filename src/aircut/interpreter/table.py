@@ -186,7 +186,7 @@ class Dialect(NamedTuple):
 
     name: str
     title: str
-    interpreter: Callable[..., Run]  # (source, dialect, machine, settings): reads and runs its programs
+    interpreter: type[Run]  # (source, dialect, machine, settings): reads and runs its programs
     codes: Mapping[str, Code]  # by normalized text: "g59.1", "m3", "call"
     items: Mapping[str, Code]  # by letter
     unsupported: frozenset[str]  # codes that belong to relatives of the language only
