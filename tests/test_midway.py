@@ -205,3 +205,14 @@ def test_checking_compiles_for_analysis() -> None:
     text = "G21\nIF [#<cnc.compile.mode> EQ #<compile.mode_program_for_analysis>] THEN G0 X[1/0]\nM2\n"
     assert [d.code for d in aircut.loads(text).check()] == ["division-by-zero"]
     assert codes(aircut.loads(text).run()) == []
+
+
+def test_the_stop_s_rotary_axes_and_unit() -> None:
+    """Rotary axes in degrees, lengths in the unit in force: 50.8 mm are 2 inches."""
+    read = "#1 = #5091 #2 = #5094 #3 = #5095 #4 = #5096\n#5 = #5081 #6 = #5084\n"
+    text = "G21 G90 F100\nG0 X50.8 A30 B-40 C50\nG20\n" + read + "M2\n"
+    program = aircut.loads(text)
+    stop = program.run(built_in("XYZABC"), stop_line=4).stop
+    assert stop is not None and stop.place == (50.8, 0.0, 0.0, 30.0, -40.0, 50.0)
+    known = program.run(built_in("XYZABC"), start=Start(4, stop.moves, stop), mode=Mode.RESUME).variables
+    assert [known[number] for number in range(1, 7)] == pytest.approx([2.0, 30.0, -40.0, 50.0, 2.0, 30.0])
