@@ -119,7 +119,6 @@ def test_run_stops_at_the_first_error(bad: Path) -> None:
     [
         ("run",),
         ("run", "x.ngc", "--format", "pdf"),
-        ("run", "x.ngc", "--dialect", "linuxcnc"),
         ("run", "x.ngc", "--axes", "XQ"),
         ("run", "x.ngc", "--machine", "nowhere"),
         ("plot", "x.ngc", "-o", "x.bmp"),
