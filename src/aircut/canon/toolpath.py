@@ -35,7 +35,7 @@ EXACT_PATH = 2  # no blending with its neighbors (G61)
 INVERSE_TIME = 4  # programmed under G93; `feed` is the resulting speed
 BY_HAND = 8  # the operator moves the machine there (G88): not in the listing
 
-TIP = 16  # under tool center point control: the feed is that of the tip
+TIP = 16  # under tool center point control: the program said where the tip goes, see tips()
 PART = 32  # a part of a programmed move that others follow: the listing has the last one alone
 TOLD = 64  # told by the command before it (a spline, tapping): not a line of the listing
 
@@ -53,7 +53,7 @@ COLUMNS = (
     *(Column(axis, "d", f"end point {axis.upper()} in machine coordinates, degrees") for axis in "abc"),
     Column("u", "d", "arc center, first axis of the plane, mm (0 for lines)"),
     Column("v", "d", "arc center, second axis of the plane, mm (0 for lines)"),
-    Column("feed", "d", "mm/min, or degrees/min when only rotary axes move; 0 for traverses; of the tip under TIP"),
+    Column("feed", "d", "mm/min, or degrees/min when only rotary axes move; 0 for traverses"),
     Column("line", "i", "line in its file, from 1"),
     Column("tool", "i", "tool in the spindle"),
     Column("turns", "h", "arc turns: + counterclockwise, - clockwise; 0 for lines"),

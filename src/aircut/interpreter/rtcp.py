@@ -3,28 +3,30 @@
 The program says where the tool's tip is on the part and how the rotary axes stand;
 the linear axes follow. A move becomes as many straight ones of all axes as keep the
 tip within TOLERANCE of its way. The toolpath's rows hold positions of the axes, less
-the tool's offset as ever; the feed stays that of the tip.
+the tool's offset as ever, and the speed of the axes at which the tip has the speed F.
 
 Sources: 000 section 12; decisions AMB-RTCP-1 to AMB-RTCP-7.
 """
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Generator
 from functools import partial
-from math import atan2, cos, hypot, sin
+from math import atan2, cos, hypot, radians, sin
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from aircut.canon import EXACT_STOP, PART, TIP, Kind
+from aircut.canon import EXACT_STOP, PART, ROW, TIP, Kind
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.geometry import arcs
-from aircut.geometry.kinematics import MODELS, Setup, Sweep, inverse, pieces, straight
+from aircut.geometry.kinematics import MODELS, Setup, Sweep, minus, pieces
 from aircut.interpreter.motion import LINEAR_AXES
 from aircut.interpreter.path import Onward, Place
 from aircut.interpreter.state import State
 from aircut.interpreter.table import Code, Group, Order, Words
 from aircut.interpreter.tooling import compensate, tool_of
+from aircut.kernels import follow as kernel
 from aircut.machine import Machine
 from aircut.machine.config import KINEMATICS, ROTARY
 
@@ -34,64 +36,97 @@ if TYPE_CHECKING:
 TOLERANCE = 0.01  # mm between the tip and its programmed way (AMB-RTCP-6)
 MOST = 1_000_000  # pieces of a move
 FEED = int(Kind.FEED)
+FEW = 64
+
+
+def scratch(count: int) -> tuple[memoryview, memoryview, memoryview]:
+    """Memory for the start of a move and so many rows, as bytes, numbers and words."""
+    rows = memoryview(bytearray((count + 1) * ROW.size))
+    return rows, rows.cast("d"), rows.cast("q")
+
+
+SCRATCH = scratch(FEW)  # where the rows of most moves are made
 
 #: Modes that cannot be in force together with it (AMB-RTCP-6).
 EXCLUDED = ("G41", "G41.1", "G42", "G42.1", "G51", "G68.2")
 
 
 class Control(NamedTuple):
-    """The stage that turns ways of the tip into ways of the axes."""
+    """The stage that turns ways of the tip into ways of the axes: the last one before the recorder."""
 
     setup: Setup
+    facts: array[float]  # the same, as the kernel wants it
 
     def line(self, m: State, kind: int, end: Place, speed: float, flags: int, *, onward: Onward) -> None:
         """The tip moves straight."""
-        setup = self.setup
-        start = m.to_space(m.position)
-        first, last = start[3:], end[3:]
-        count = self.count(pieces(setup, straight(setup, start, end), first, last, TOLERANCE))
-        inner = (flags & ~EXACT_STOP) | TIP | PART
-        for piece in range(1, count):
-            part = piece / count
-            onward.line(m, kind, self.place([a + part * (b - a) for a, b in zip(start, end)]), speed, inner)  # noqa: B905
-        onward.line(m, kind, self.place(end), speed, flags | TIP)
+        start, goal = array("d", m.to_space(m.position)), array("d", end)
+        count = kernel.pieces(self.facts, start, goal, TOLERANCE)
+        if count > MOST:
+            raise Refusal(F.RTCP_TOO_LONG, limit=MOST)
+        last = flags | TIP
+        self.write(m, kind, start, goal, speed, int(count), (last & ~EXACT_STOP) | PART, last)
 
     def arc(
         self, m: State, end: Place, center: tuple[float, float], turns: int, speed: float, flags: int, *, onward: Onward
     ) -> None:
         """The tip moves along an arc or helix, in chords."""
-        setup = self.setup
         start = m.to_space(m.position)
         u, v, w = arcs.PLANE_AXES[m.plane]
         here, there = (start[u], start[v]), (end[u], end[v])
         swept = arcs.sweep(here, there, center, turns)
         first = hypot(here[0] - center[0], here[1] - center[1])
         grown = hypot(there[0] - center[0], there[1] - center[1]) - first
-        sweep = around(setup, m.plane, center, (start[w], end[w]), first, grown, abs(swept))
-        count = self.count(pieces(setup, sweep, start[3:], end[3:], TOLERANCE))
+        sweep = around(self.setup, m.plane, center, (start[w], end[w]), first, grown, abs(swept))
+        count = pieces(self.setup, sweep, start[3:], end[3:], TOLERANCE)
+        if count > MOST:
+            raise Refusal(F.RTCP_TOO_LONG, limit=MOST)
         begin = atan2(here[1] - center[1], here[0] - center[0])
-        for piece in range(1, count):
+        last = flags | TIP
+        before = array("d", start)
+        for piece in range(1, int(count)):
             part = piece / count
-            place = [a + part * (b - a) for a, b in zip(start, end)]  # noqa: B905  six axes both
+            place = array("d", [a + part * (b - a) for a, b in zip(start, end, strict=True)])
             angle, radius = begin + part * swept, first + part * grown
             place[u] = center[0] + radius * cos(angle)
             place[v] = center[1] + radius * sin(angle)
-            onward.line(m, FEED, self.place(place), speed, (flags & ~EXACT_STOP) | TIP)
-        onward.line(m, FEED, self.place(end), speed, flags | TIP)
+            self.write(m, FEED, before, place, speed, 1, 0, last & ~EXACT_STOP)
+            before = place
+        self.write(m, FEED, before, array("d", end), speed, 1, 0, last)
+
+    def write(
+        self, m: State, kind: int, start: array[float], end: array[float], speed: float, count: int, inner: int,
+        last: int,
+    ) -> None:  # fmt: skip
+        """Write a move of the tip as so many rows. inner, last: flags of the last row and of those before it."""
+        out = m.out
+        room = (count + 1) * ROW.size
+        rows, doubles, words = SCRATCH if count < FEW else scratch(count)
+        numbers = out.line | m.tool << 32
+        rest = out.file << 16 | kind << 32 | m.plane << 40
+        kernel.follow(
+            self.facts, start, end, speed, count, numbers, rest | inner << 48, rest | last << 48,
+            doubles, words,
+        )  # fmt: skip
+        out.rows += rows[ROW.size : room]
 
     def flush(self, m: State, *, onward: Onward) -> None:
         """It holds nothing back."""
 
-    def place(self, tip: Place) -> Place:
-        """What the toolpath keeps for a tip: positions of the axes without the tool's offset."""
-        tool = self.setup.tool
-        x, y, z = inverse(self.setup, (tip[0], tip[1], tip[2]), (tip[3], tip[4], tip[5]))
-        return [x - tool[0], y - tool[1], z - tool[2], *tip[3:]]
 
-    def count(self, wanted: float) -> int:
-        if wanted > MOST:
-            raise Refusal(F.RTCP_TOO_LONG, limit=MOST)
-        return int(wanted)
+def control_of(setup: Setup) -> Control:
+    """The stage for a setup."""
+    model = MODELS[setup.model]
+    h, arm = setup.h, minus(setup.j, setup.tool)
+    if model.head:
+        bound = (
+            hypot(*(h[i] for i in range(3) if i != model.outer)) + hypot(*arm),
+            hypot(*(arm[i] for i in range(3) if i != model.inner)),
+        )
+        rest = (*h, *arm, bound[0], bound[1], bound[1])
+    else:
+        rest = (*setup.d, 0.0, 0.0, 0.0, hypot(setup.d_x, setup.d_y), setup.d_z, 0.0)
+    signs = (radians(setup.signs[model.outer]), radians(setup.signs[model.inner]))
+    return Control(setup, array("d", (model.head, model.outer, model.inner, *signs, *rest)))
 
 
 def around(
@@ -148,7 +183,7 @@ def control(name: str, own: bool, m: State, w: Words) -> None:
     if setup is None:
         told = "on" if m.machine.options.rtcp else "off"
         raise Refusal(F.NO_RTCP, "g", code=name, why=f"kinematics {m.machine.kinematics}, option rtcp {told}")
-    compensate(m, offset, tool, Control(setup))
+    compensate(m, offset, tool, control_of(setup))
 
 
 def guarded(row: Code) -> Code:

@@ -31,3 +31,4 @@ if os.environ.get("AIRCUT_PYTHON_KERNELS"):
     pieces = twin("pieces", "aircut.kernels.pieces")
     lookahead = twin("lookahead", "aircut.kernels.lookahead")
     thin = twin("thin", "aircut.kernels.thin")
+    follow = twin("follow", "aircut.kernels.follow")
