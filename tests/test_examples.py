@@ -3,6 +3,7 @@
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import aircut
@@ -102,3 +103,40 @@ def test_macro_call_g65(tmp_path: Path) -> None:
 )
 def test_without_fault(name: str, tmp_path: Path) -> None:
     run(f"{name}.ngc", tmp_path)
+
+
+@here
+def test_g73_peck_drilling(tmp_path: Path) -> None:
+    """Three holes of ten bites from R2 to Z-8, each left to Z2."""
+    path = run("g73_peck_drilling.ngc", tmp_path).toolpath
+    for x in (10, 20, 30):
+        hole = (path.x == x) & (path.y == 10)
+        depths = path.z[hole & (path.kind == 1)]
+        assert depths.tolist() == pytest.approx([1 - i for i in range(10)])
+        assert path.z[hole & (path.kind == 0)][-2 if x < 30 else -1] == 2
+
+
+@here
+def test_polar_standard(tmp_path: Path) -> None:
+    """A square of circumradius 50 stood on a corner, and a spiral of radii 10 to 50, a quarter turn each."""
+    path = run("polar_standard.ngc", tmp_path).toolpath
+    ends = path.ends()[path.kind == 1][:, :2]
+    square = [(0, 50), (-50, 0), (0, -50), (50, 0), (0, 50)]
+    assert ends[:5] == pytest.approx(np.array(square, float), abs=1e-9)
+    spiral = [(0, 10), (-20, 0), (0, -30), (40, 0), (0, 50)]
+    assert ends[5:] == pytest.approx(np.array(spiral, float), abs=1e-9)
+
+
+@here
+def test_polar_complete(tmp_path: Path) -> None:
+    """Squares and spirals in three planes, by @ and ^ and, 100 mm to the right, by the planes' own words."""
+    path = run("polar_complete.ngc", tmp_path).toolpath
+    ends = path.ends()[path.kind == 1][:, :3]
+    for x in (0, 100):
+        for first, second in ((0, 1), (0, 2), (1, 2)):
+            for radius, angle in ((50, 90), (50, 180), (50, 270), (50, 0), (10, 90), (20, 180), (30, 270), (40, 0)):
+                wanted = np.array([x, 0.0, 0.0])
+                wanted[first] += radius * np.cos(np.radians(angle))
+                wanted[second] += radius * np.sin(np.radians(angle))
+                assert np.abs(ends - wanted).max(axis=1).min() < 1e-9
+    assert np.hypot(np.hypot(ends[:, 1], ends[:, 2]), ends[:, 0] - 100 * (ends[:, 0] > 50)).max() <= 50 + 1e-9

@@ -8,7 +8,7 @@ import aircut
 import oracle
 from aircut.machine import built_in
 
-PROGRAMS = 150  # in one test run; scripts/fuzz runs as many as wanted
+PROGRAMS = 500  # in one test run; scripts/fuzz runs as many as wanted
 
 
 def compare(seed: int, folder: Path) -> str:
