@@ -21,6 +21,7 @@ from aircut.rules.policy import Policy, RulesError
 from aircut.source import Source
 
 PATIENCE = 1.0  # seconds of work before progress is shown
+UNITS = {"mm": 1.0, "inch": 25.4}  # mm
 COLORS = {Severity.ERROR: "red", Severity.WARNING: "yellow"}
 
 
@@ -44,9 +45,11 @@ def machine(options: dict[str, Any]) -> Machine:
         made.macros = (*options["macros"], *made.macros)
         made.key = options["key"]
         if options["tools"]:
-            from aircut.machine.imports import read_tools
+            from aircut.machine.imports import read_library
 
-            made.tools = read_tools(options["tools"])
+            made.tools, warnings = read_library(options["tools"], UNITS[options["tool_unit"]])
+            for text in warnings:
+                click.echo(f"{text} (warning)", err=True)
             made.own_tools = True
         if options["parameters"]:
             known = (*memory.PERSISTENT, *memory.GIVEN)

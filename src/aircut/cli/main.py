@@ -35,6 +35,8 @@ def machine_options(command: Any) -> Any:
                      help="Variables to start from; rewritten after a run."),
         click.option("--tools", type=click.Path(path_type=Path, dir_okay=False, exists=True), metavar="FILE",
                      help="Tool library: tools.toml, LinuxCNC's .tbl, or Fusion 360's JSON."),
+        click.option("--tool-unit", type=click.Choice(["mm", "inch"]), default="mm", show_default=True,
+                     help="Unit of a LinuxCNC .tbl, which does not name its own."),
         click.option("--key", envvar="AIRCUT_KEY", metavar="KEY", help="Key of encrypted macros (or AIRCUT_KEY)."),
         click.option("--macros", type=FOLDER, multiple=True, metavar="DIR", help="Folder of macro files; repeatable."),
         click.option("--axes", default=None, metavar="LETTERS", help="Axes of the built-in machine, as XYZA."),

@@ -77,7 +77,10 @@ def simulated(made: Run, options: dict[str, Any]) -> Simulation | None:
     if path is None and options["folder"] and (options["folder"] / "world.toml").exists():
         path = options["folder"] / "world.toml"
     try:
-        return Simulation(made, load(path) if path else World())
+        world = load(path) if path else World()
+        for text in world.warnings:
+            click.echo(f"{path}: warning: {text}", err=True)
+        return Simulation(made, world)
     except WorldError as error:
         raise click.UsageError(str(error)) from None
 

@@ -5,17 +5,16 @@ from __future__ import annotations
 from typing import IO, TYPE_CHECKING, Any
 
 from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
+from rich.text import Text
 
 from aircut import markup
 from aircut.cli.common import totals
+from aircut.controller.windows import BUTTONS, CUSTOM, HUD, shown
 from aircut.export.report import figures
 
 if TYPE_CHECKING:
-    from aircut.api import Result
-
-TAGGED = (0, 1, 2, 3)  # windows that show tags; others show the text as it is (AMB-MSG-8)
+    from aircut.api import Message, Result
 
 
 def summary(result: Result, out: IO[str]) -> None:
@@ -26,8 +25,8 @@ def summary(result: Result, out: IO[str]) -> None:
     rest = Table(show_header=False, box=None, pad_edge=False)
     rest.add_column(style="bold")
     rest.add_column(overflow="fold")
-    for title, text in lines(result, numbers):
-        rest.add_row(title, escape(text))
+    for title, text in lines(result, numbers, out.isatty()):
+        rest.add_row(title, Text.from_ansi(text))
     console.print(rest)
 
 
@@ -49,8 +48,18 @@ def extents(boxes: dict[str, Any]) -> Table:
     return table
 
 
-def lines(result: Result, numbers: dict[str, Any]) -> list[tuple[str, str]]:
-    """The other figures: title and text."""
+def window(message: Message, result: Result, terminal: bool) -> tuple[str, str]:
+    """A message as the operator sees it: what it is, and its text with the window's buttons."""
+    show = markup.ansi if terminal else markup.plain
+    text = show(shown(message.text, message.kind, result.tool))
+    if message.kind == HUD:
+        return "HUD", text
+    buttons = " ".join(f"[{button}]" for button in BUTTONS.get(message.kind, CUSTOM))
+    return "picture" if message.medium == "media" else "message", f"{text}  {buttons}"
+
+
+def lines(result: Result, numbers: dict[str, Any], terminal: bool = False) -> list[tuple[str, str]]:
+    """The other figures: title and text. terminal: with codes for the styles of messages."""
     counts = numbers["counts"]
     length, rotation = numbers["length"], numbers["rotation"]
     rows = [
@@ -69,11 +78,7 @@ def lines(result: Result, numbers: dict[str, Any]) -> list[tuple[str, str]]:
     if numbers["dwell_seconds"]:
         rows.append(("dwell", f"{numbers['dwell_seconds']:g} s"))
     rows += midway(result)
-    rows += [
-        ("message", markup.plain(markup.parse(message.text, result.tool, tags=message.kind in TAGGED)))
-        for message in result.messages
-        if message.text
-    ]
+    rows += [window(message, result, terminal) for message in result.messages if message.text]
     rows.append(("faults", totals(result.diagnostics) or "none"))
     return rows
 

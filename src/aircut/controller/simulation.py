@@ -12,15 +12,31 @@ from math import dist
 from typing import Any, ClassVar, NamedTuple
 
 from aircut.canon import ROW, Chunk, Kind
+from aircut.canon.record import NUMBERS, Events
+from aircut.controller.windows import HUD, STOP, Window, shown, window
 from aircut.controller.world import Input, World
-from aircut.interpreter.requests import Answer, Ask, Inputs, Output, Pause, Plc, Probe, Probed, Request, Wait, Waited
+from aircut.interpreter.requests import (
+    Answer,
+    Ask,
+    Inputs,
+    Output,
+    Overlay,
+    Pause,
+    Plc,
+    Probe,
+    Probed,
+    Request,
+    Wait,
+    Waited,
+)
 from aircut.interpreter.running import Run
 from aircut.machine.tools import EMPTY
+from aircut.markup import Document
 
 PLC_GROUP = "aircut.plc"  # entry points: a function (simulation, **arguments) under the P of G100
 PROBE_TYPE = 4  # of tools: these touch with a ball, all others with the point at their end
-STOP_BUTTON = 1  # the window whose only button stops
 THRESHOLD = 50.0  # percent from which an analog input counts as high (AMB-IO-3)
+DWELL = NUMBERS["DWELL"]
 STEP = 0.01  # seconds between two looks at an input scripted in sequence
 PATIENCE = 3600.0  # seconds after which a wait without limit is given up
 
@@ -39,10 +55,12 @@ class Simulation:
         self.world = world
         self.time = 0.0  # seconds
         self.outputs: dict[tuple[int, bool], float] = {}  # (number, analog) -> value
-        self.shown: list[Ask] = []
+        self.shown: list[Window] = []
+        self.hud = Document(())  # the text over the picture of the machine
         self.pauses = 0
         self.plc_calls: list[Plc] = []
         self.seen = 0  # moves of which the time has been counted
+        self.heard = 0  # events of the present chunk of which the time has been counted
         self.place = (0.0, 0.0, 0.0)
         self.read: dict[tuple[int, bool], int] = {}  # readings of inputs scripted in sequence
         self.replies = iter(world.file.operator)
@@ -58,7 +76,8 @@ class Simulation:
                 return
             reply = None
             if isinstance(item, Chunk):
-                self.count(item.rows, item.first)
+                self.count(item.rows, item.first, item.events)
+                self.heard = 0
                 yield item
             else:
                 self.catch_up()
@@ -68,10 +87,13 @@ class Simulation:
 
     def catch_up(self) -> None:
         out = self.interpreter.state.out
-        self.count(bytes(out.rows), out.first)
+        self.count(bytes(out.rows), out.first, out.events, out.marks[0] if out.marks else None)
 
-    def count(self, rows: bytes, first: int) -> None:
-        """Add the time of the moves that have not been counted yet."""
+    def count(self, rows: bytes, first: int, events: Events, settled: int | None = None) -> None:
+        """Add the time of the moves and dwells that have not been counted yet.
+
+        settled: events from this one on may still change places.
+        """
         rapid = min((axis.velocity for axis in self.interpreter.machine.axes.values()), default=1000.0)
         for row in ROW.iter_unpack(rows[max(self.seen - first, 0) * ROW.size :]):
             place = (row[0], row[1], row[2])
@@ -80,6 +102,11 @@ class Simulation:
                 self.time += 60.0 * dist(place, self.place) / speed
             self.place = place
             self.seen += 1
+        end = len(events) if settled is None else settled
+        for i in range(self.heard, end):
+            if events.name[i] == DWELL:
+                self.time += events.values[i][0]
+        self.heard = end
 
     # --- answers
 
@@ -159,11 +186,17 @@ class Simulation:
 
     def ask(self, request: Ask) -> Answer:
         """The operator's scripted answer; without one Resume with the defaults, or Stop where that is all there is."""
-        self.shown.append(request)
+        opened = window(request, self.interpreter.state.tools.get)
+        self.shown.append(opened)
         reply = next(self.replies, None)
         if reply is None:
-            return Answer(request.kind == STOP_BUTTON)
+            return Answer(opened.buttons == (STOP,))
+        if len(opened.buttons) == 1:
+            return Answer(opened.buttons == (STOP,), tuple(reply.values))
         return Answer(reply.stop, tuple(reply.values))
+
+    def overlay(self, request: Overlay) -> None:
+        self.hud = shown(request.text, HUD, self.interpreter.state.tools.get)
 
     def pause(self, request: Pause) -> None:
         self.pauses += not request.optional or self.interpreter.settings.optional_stop
@@ -182,6 +215,7 @@ class Simulation:
         Inputs: inputs,
         Output: output,
         Ask: ask,
+        Overlay: overlay,
         Pause: pause,
         Plc: plc,
     }

@@ -77,6 +77,7 @@ class World:
     def __init__(self, file: File | None = None, folder: Path = Path()) -> None:
         """Raises WorldError for a body that cannot be made."""
         self.file = file or File()
+        self.warnings: list[str] = []  # what may not be as it was meant
         self.folder = folder
         self.body = self.make()
         self.tools = {tool.id: tool for tool in self.file.tools}
@@ -118,7 +119,10 @@ class World:
         import trimesh
 
         mesh = trimesh.load_mesh(self.folder / body.file)
-        return contact.Mesh(np.asarray(mesh.triangles, float) + np.asarray(body.at))
+        made = contact.Mesh(np.asarray(mesh.triangles, float) + np.asarray(body.at))
+        if not made.closed:
+            self.warnings.append(f"{body.file}: the surface is not closed: it counts as a sheet, with nothing inside")
+        return made
 
 
 def load(path: Path) -> World:

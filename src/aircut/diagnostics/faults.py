@@ -235,6 +235,12 @@ PROBE_ROTARY = Fault("E0044", "cannot move rotary axes during probing")
 PROBE_TOO_CLOSE = Fault("E0162", "start point too close to probe point", "probe over 0.254 mm at least")
 PROBE_FAILED = Fault("probe-failed", "probing failed: {reason}", "G38.3 and G38.5 go on and report in #5700")
 USER_ERROR = Fault("E0345", "{text}", why="The program itself says that it cannot go on (M109 Q-1, M120 Q-1).")
+NO_PICTURE = Fault(
+    "no-picture",
+    "there is no picture {name} in the machine's media folder",
+    "M120 shows files of {folder}",
+    WARNING,
+)
 OPERATOR_STOP = Fault("operator-stop", "the operator pressed Stop: {text}")
 INPUT_TIMEOUT = Fault("input-timeout", "{what} {number} did not change within {seconds:g} s")
 SLOT_KEPT = Fault("slot-kept", "tool {tool} is in the table, so it stays in slot {slot}", severity=WARNING)

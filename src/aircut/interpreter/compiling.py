@@ -22,9 +22,9 @@ from aircut.language.expressions import (
     Binary,
     Expression,
     Name,
-    Negation,
     Number,
     Parameter,
+    Sign,
     Text,
     Variable,
 )
@@ -80,9 +80,9 @@ class Writer:
                 return self.variable(node)
             case Name():
                 return f"m.read_name({self.name(node)})", 1
-            case Negation():
+            case Sign():
                 text, depth = self.checked(node.operand)
-                return self.step(f"(-{text})", depth + 1)
+                return self.step(f"({'-' if node.negative else '+'}{text})", depth + 1)
             case Binary():
                 return self.chain(node)
             case Application():
@@ -199,8 +199,9 @@ def walk(node: Expression | Text, m: State, k: Values = ()) -> Any:
                 return m.read(solid(node.number, m, k, "as the number of a variable"))
             case Name():
                 return m.read_name(name_of(node, m, k))
-            case Negation():
-                return -solid(node.operand, m, k, "behind a minus sign")
+            case Sign():
+                value = solid(node.operand, m, k, "behind a sign")
+                return -value if node.negative else value
             case Binary():
                 return walk_chain(node, m, k)
             case Application():

@@ -32,8 +32,30 @@ def switch(on: bool, m: State, w: Words) -> Generator[Request, Any, None]:
     """M62, M63 P: an output on, off."""
     number = numbered(w, m.machine.options.outputs, "outputs")
     m.out.event("SET_MOTION_OUTPUT_BIT" if on else "CLEAR_MOTION_OUTPUT_BIT", number)
-    m.outputs_on = m.outputs_on | {number} if on else m.outputs_on - {number}
+    told(m, number, False, on)
     yield Output(number, float(on), False)
+
+
+def told(m: State, number: int, analog: bool, on: bool) -> None:
+    """Remember which outputs are on: the end of the program puts them off."""
+    m.outputs_on = m.outputs_on | {(number, analog)} if on else m.outputs_on - {(number, analog)}
+
+
+def all_off(m: State) -> None:
+    """M2, M30: what is on goes off (AMB-IO-10)."""
+    for number, analog in sorted(m.outputs_on):
+        if analog:
+            m.out.event("SET_AUX_OUTPUT_VALUE", number, 0.0)
+        else:
+            m.out.event("CLEAR_MOTION_OUTPUT_BIT", number)
+        m.going_off.append(Output(number, 0.0, analog))
+    m.outputs_on = frozenset()
+
+
+def switched_off(m: State) -> Generator[Request, Any, None]:
+    """Tell the world what `all_off` has put off."""
+    while m.going_off:
+        yield m.going_off.pop(0)
 
 
 def analog_output(m: State, w: Words) -> Generator[Request, Any, None]:
@@ -42,6 +64,7 @@ def analog_output(m: State, w: Words) -> Generator[Request, Any, None]:
     if not 0.0 <= w["q"] <= 100.0:
         raise out_of_range(w, "q", "0 to 100 percent")
     m.out.event("SET_AUX_OUTPUT_VALUE", number, w["q"])
+    told(m, number, True, w["q"] != 0.0)
     yield Output(number, w["q"], True)
 
 

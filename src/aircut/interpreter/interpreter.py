@@ -15,6 +15,7 @@ from aircut.interpreter.arranging import Steps, arrange, code_name, find
 from aircut.interpreter.auxiliary import End, Restart
 from aircut.interpreter.calls import ARGUMENTS, Call, Return
 from aircut.interpreter.compiling import FAILURES, explain
+from aircut.interpreter.inputs import switched_off
 from aircut.interpreter.midway import Midway
 from aircut.interpreter.requests import Request
 from aircut.interpreter.running import WHOLE, Mode, Run, Settings, Stopped
@@ -111,6 +112,7 @@ class Interpreter(Run):
                 yield from self.blocks()
             except Stopped:
                 m.out.drop()
+            yield from switched_off(m)
             self.check_rest()
         if self.midway is not None:
             self.midway.drop(m)
@@ -200,6 +202,7 @@ class Interpreter(Run):
 
     def check_rest(self) -> None:
         """Lines that did not run are still read, so that one run shows all faults of form."""
+        self.check_ends(self.units[self.files[0]])
         for unit in self.units.values():
             line = unit.seen.find(0)
             while line >= 0:
@@ -209,6 +212,35 @@ class Interpreter(Run):
             for line, refusal in unit.encoding:
                 self.tell_refusal(refusal, unit, line, stack=False)
         self.diagnostics.sort(key=lambda d: (d.file != self.files[0], d.file, d.span.line))
+
+    def check_ends(self, unit: Unit) -> None:
+        """Subroutines of the program that were never called want an end as well (AMB-CALL-3)."""
+        for routine in unit.structure.routines.values():
+            if any(unit.seen[routine.first : routine.end]):
+                continue  # it has run, and would have been found out
+            if not any(self.leads_out(unit, line) for line in range(routine.first, routine.end)):
+                refusal = Refusal(F.NO_SUBROUTINE_END, name=routine.name)
+                self.tell_refusal(refusal, unit, routine.declared, stack=False)
+
+    def leads_out(self, unit: Unit, line: int) -> bool:
+        """Whether a line can return from its routine, or end the program; one at fault might."""
+        try:
+            if unit.source.classes[line] == BLANK:
+                return False
+            if unit.source.classes[line] == PLAIN:
+                shape = self.plan(unit.source.words(line)[0])
+                names = shape.codes if shape else ()
+            else:
+                statement, _ = unit.statement(line)
+                if not isinstance(statement, Statement):
+                    return False
+                if statement.moving or (statement.block.jump and statement.block.jump.kind == "return"):
+                    return True
+                names = statement.codes
+        except Refusal:
+            return True
+        rows = [self.dialect.codes[name] for name in names if name in self.dialect.codes]
+        return any(row.group & (Group.RETURN | Group.STOP) for row in rows)
 
     def in_program(self, unit: Unit, line: int) -> bool:
         order = unit.structure.order

@@ -12,6 +12,7 @@ from typing import Any
 from aircut.canon import Chunk
 from aircut.diagnostics import Diagnostic
 from aircut.interpreter import starting
+from aircut.interpreter.inputs import switched_off
 from aircut.interpreter.interpreter import Interpreter
 from aircut.interpreter.requests import Request
 from aircut.interpreter.running import Mode, Settings, Stopped
@@ -55,5 +56,6 @@ class Session:
                 yield from running.blocks()
             except Stopped:
                 pass
+            yield from switched_off(running.state)
         running.leave_command()
         yield running.state.out.take()

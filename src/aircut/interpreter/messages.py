@@ -7,13 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.interpreter import media as media_files
 from aircut.interpreter import rotary
 from aircut.interpreter.compiling import walk
-from aircut.interpreter.requests import Answer, Ask, Request
+from aircut.interpreter.requests import Answer, Ask, Overlay, Request
 from aircut.interpreter.state import State, out_of_range, whole
 from aircut.interpreter.table import Code, Group, Order, Words
 from aircut.language.expressions import Parser
@@ -58,9 +60,11 @@ def show(media: bool, m: State, w: Words) -> Generator[Request, Any, None]:
     m.out.event("MESSAGE", text, kind, "media" if media else "text")
     defaults = [w.get("d", m.entered[0] if m.entered[0] is not None else 0.0)]
     defaults += [value if value is not None else 0.0 for value in m.entered[1:number]]
+    file = picture(m, text) if media else None
     if kind == HUD:
+        yield Overlay(text, media, file)
         return
-    reply: Answer | None = yield Ask(text, media, kind, number, defaults[0] if number else None)
+    reply: Answer | None = yield Ask(text, media, kind, tuple(defaults[:number]), file)
     if reply is not None and reply.stop:
         raise Refusal(F.OPERATOR_STOP, text=markup.plain(markup.parse(text)))
     values = defaults[:number] if reply is None or not reply.values else list(reply.values)[:number]
@@ -68,6 +72,17 @@ def show(media: bool, m: State, w: Words) -> Generator[Request, Any, None]:
         m.answer = values[0] if values else None
     elif kind >= CUSTOM:
         m.entered[: len(values)] = values
+
+
+def picture(m: State, name: str) -> Path | None:
+    """The picture of M120; one that the machine's media folder lacks is told of (AMB-MSG-11)."""
+    if m.machine.folder is None:
+        return None
+    folder = m.machine.folder / "media"
+    found = media_files.find(name, folder)
+    if found is None and name:
+        m.warn(F.NO_PICTURE, "p", name=name, folder=folder)
+    return found
 
 
 def asked(w: Words, kind: int) -> int:

@@ -7,6 +7,7 @@ the program goes on with what its document says of that.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import NamedTuple
 
 
@@ -66,14 +67,23 @@ class Output(NamedTuple):
 class Ask(NamedTuple):
     """Show something to the operator and wait for an answer. Reply: Answer.
 
-    kind: the Q word. inputs: how many values are asked for.
+    kind: the Q word. defaults: what the values asked for begin with, one each.
+    picture: the file that M120 shows, where there is one.
     """
 
     text: str
     media: bool
     kind: int
-    inputs: int
-    default: float | None
+    defaults: tuple[float | None, ...] = ()
+    picture: Path | None = None
+
+
+class Overlay(NamedTuple):
+    """Show something over the picture of the machine without waiting (Q4); empty clears it. No reply."""
+
+    text: str
+    media: bool
+    picture: Path | None = None
 
 
 class Answer(NamedTuple):
@@ -96,4 +106,4 @@ class Plc(NamedTuple):
     arguments: dict[str, float]
 
 
-Request = Probe | Wait | Inputs | Output | Ask | Pause | Plc
+Request = Probe | Wait | Inputs | Output | Ask | Overlay | Pause | Plc

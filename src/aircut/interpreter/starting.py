@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from aircut.interpreter import path, rotary
 from aircut.interpreter.auxiliary import End
+from aircut.interpreter.inputs import all_off
 from aircut.interpreter.offsets import tell_rotation, tell_shift, tell_system
 from aircut.interpreter.state import PLANES, WORK_SYSTEMS, State
 from aircut.interpreter.table import Group
@@ -108,6 +109,7 @@ def finish(m: State, end: End) -> None:
     if m.flood:
         out.event("FLOOD_OFF")
     m.mist = m.flood = False
+    all_off(m)
     if m.stop_code == 30.0:
         out.event("PALLET_SHUTTLE")
     m.absolute = True

@@ -99,7 +99,8 @@ class State:
         self.feed_override_code = 48.0
         self.speed_override_code = 48.0
 
-        self.outputs_on: frozenset[int] = frozenset()
+        self.outputs_on: frozenset[tuple[int, bool]] = frozenset()  # number, and whether analog
+        self.going_off: list[Any] = []  # the requests that put outputs off at the end
         self.interpolated = 0  # axes by bits, G101
         self.traverse_rate = 0.0  # mm/min, G103
         self.acceleration = 0.0  # mm/s², G104

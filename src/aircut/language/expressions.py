@@ -52,9 +52,10 @@ class Name(NamedTuple):
     where: Where
 
 
-class Negation(NamedTuple):
-    """A minus sign before a value."""
+class Sign(NamedTuple):
+    """A sign before a value: it wants a number, so a plus is not nothing."""
 
+    negative: bool
     operand: Expression
     where: Where
 
@@ -83,7 +84,7 @@ class Text(NamedTuple):
     where: Where
 
 
-Expression = Number | Parameter | Variable | Name | Negation | Binary | Application
+Expression = Number | Parameter | Variable | Name | Sign | Binary | Application
 
 NUMBER = re.compile(r"\d+\.?\d*|\.\d+")
 NAME_TEXT = re.compile(r"[^\[\]<>#\x01\"]+")
@@ -161,11 +162,12 @@ class Parser:
         while self.at < len(self.code) and self.code[self.at] in "+-":
             negative ^= self.code[self.at] == "-"
             self.at += 1
+        signed = self.at > start
         node = self.primary()
-        if not negative:
+        if not signed or (isinstance(node, Number | Parameter) and not negative):
             return node
         where = (start, self.at)
-        return Number(-node.value, where) if isinstance(node, Number) else Negation(node, where)
+        return Number(-node.value, where) if isinstance(node, Number) else Sign(negative, node, where)
 
     def primary(self) -> Expression:
         start = self.at
