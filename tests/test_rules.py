@@ -211,7 +211,9 @@ def machine(axes: str):
     return built_in(axes)
 
 
-@pytest.mark.parametrize("text", ["O1\nG1 X1\nM99\n", "G1 X1\nM99\n", 'SUB "a"\nG0 Z-5\nENDSUB\n'])
+@pytest.mark.parametrize(
+    "text", ["O1\nG1 X1\nM99\n", "G1 X1\nM99\n", "IF [#1 EQ #0] THEN M2\nG1 X#1\nM99\n", 'SUB "a"\nG0 Z-5\nENDSUB\n']
+)
 def test_macros_run_in_their_callers_modes(text: str) -> None:
     assert warnings(text) == []
 

@@ -23,13 +23,13 @@ def checked(run: Run, policy: Policy) -> Iterator[None]:
     for chunk in run.run():
         watch.add(chunk)
         yield
-    if isinstance(run, Interpreter) and run.macro_file:  # it runs in its caller's modes
+    page = Page(run) if isinstance(run, Interpreter) and run.ran else None
+    if page is not None and page.macro:  # it runs in its caller's modes
         run.diagnostics[:] = [d for d in run.diagnostics if d.code != F.NO_FEED.code]
     else:
         for diagnostic in watch.found:
             run.tell(diagnostic)
-    if isinstance(run, Interpreter) and run.ran:
-        page = Page(run)
+    if page is not None:
         for rule in READING:
             for diagnostic in rule(page):
                 run.tell(diagnostic)

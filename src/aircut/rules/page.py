@@ -14,6 +14,7 @@ from aircut.language.structure import find_labels
 
 #: A GOTO and its label; without one it is computed.
 GOTO = re.compile(rb"goto[ \t]*(?:(\d[\d \t]*)|.)")
+RETURN = re.compile(rb"m[ \t]*0*99(?![\d.])")
 
 
 class Page:
@@ -25,6 +26,8 @@ class Page:
         self.structure = self.unit.structure
         self.low = small(self.unit)
         self.gotos = list(self._gotos())
+        #: Whether the file is a macro: it begins with O or SUB, or its main part has an M99.
+        self.macro = run.macro_file or any(self.structure.routine(line).name == "" for line in self.lines(RETURN))
 
     def line_of(self, place: int) -> int:
         """The line of a byte."""

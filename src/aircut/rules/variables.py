@@ -14,7 +14,6 @@ from dataclasses import dataclass, field
 
 from aircut.diagnostics import Diagnostic, Severity, Span
 from aircut.diagnostics import faults as F
-from aircut.interpreter.interpreter import Interpreter
 from aircut.interpreter.unit import Unit
 from aircut.language.blocks import Block
 from aircut.language.structure import Routine
@@ -62,7 +61,7 @@ def unset(page: Page) -> Iterator[Diagnostic]:
     for routine, used in found.items():
         rest = [each for other, each in found.items() if other is not routine] + others
         for name, (start, end) in sorted(used.reads.items(), key=lambda item: item[1]):
-            kind = kind_of(name, routine, run)
+            kind = kind_of(name, routine, page)
             line = page.line_of(start)
             if not kind or (unit.source.name, line + 1) in told:
                 continue
@@ -125,12 +124,13 @@ def name_of(token: bytes) -> str:
     return str(int(text[:9])) if text.isdigit() else COMPUTED
 
 
-def kind_of(name: str, routine: Routine, run: Interpreter) -> str:
+def kind_of(name: str, routine: Routine, page: Page) -> str:
     """Whether calls can set a variable ("shared") or not ("own"); empty for what the rule leaves alone."""
+    run = page.run
     if name.isdigit():
         number = int(name)
         if 0 < number < 34:
-            return "" if routine.name or run.macro_file else "shared"
+            return "" if routine.name or page.macro else "shared"
         fresh = any(row.first <= number <= row.last and row.initial == "null" for row in run.dialect.ranges)
         return "shared" if fresh else ""
     if name in run.dialect.named or name.startswith("_args."):
