@@ -16,7 +16,7 @@ from aircut.diagnostics import Diagnostic, Severity, Span
 from aircut.diagnostics import faults as F
 from aircut.interpreter.running import Limits, Mode, Run, Settings, Start
 from aircut.interpreter.table import Dialect
-from aircut.machine import Machine, MachineError, load, memory, stops
+from aircut.machine import Machine, MachineError, load, memory, store
 from aircut.rules.policy import Policy, RulesError
 from aircut.source import Source
 
@@ -116,8 +116,7 @@ def remember(options: dict[str, Any], made: Machine, finished: Run) -> None:
         elif made.folder:
             tools = finished.state.tools
             changed = {id: tool for id, tool in tools.items() if made.library.get(id) != tool}
-            memory.remember(made.folder, kept, changed)
-            stops.keep(made.folder, finished.stop)
+            store.remember(made.folder, kept, changed, finished.stop)
     except (OSError, MachineError) as error:
         raise click.ClickException(f"cannot store the machine's variables: {error}") from None
 

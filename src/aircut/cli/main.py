@@ -188,6 +188,51 @@ def decrypt(file: Path, output: Path, key: str | None) -> None:
     sys.exit(encrypting.decrypt(file, output, key))
 
 
+PASSWORD = click.option(
+    "--password", envvar="AIRCUT_PASSWORD", metavar="WORD", help="Else AIRCUT_PASSWORD, or asked for."
+)
+
+
+@cli.group()
+def machine() -> None:
+    """What a machine remembers between runs: show and set its variables."""
+
+
+@machine.command()
+@click.argument("folder", type=FOLDER)
+@click.argument("numbers", metavar="[NUMBER|FIRST-LAST]...", nargs=-1)
+def show(folder: Path, numbers: tuple[str, ...]) -> None:
+    """Print variables that are not null: all, or those named (mm and degrees)."""
+    from aircut.cli import remembering
+
+    remembering.show(folder, numbers)
+
+
+@machine.command("set")
+@click.argument("folder", type=FOLDER)
+@click.argument("values", metavar="NUMBER=VALUE...", nargs=-1, required=True)
+@PASSWORD
+def set_variables(folder: Path, values: tuple[str, ...], password: str | None) -> None:
+    """Set variables (mm and degrees); NUMBER=null empties one.
+
+    #100 to #499, #4000 to #4999, offsets; #6000 to #6999 need the machine's password.
+    """
+    from aircut.cli import remembering
+
+    remembering.set_variables(folder, values, password)
+
+
+@machine.command("password")
+@click.argument("folder", type=FOLDER)
+@click.option("--new", metavar="WORD", help="The new password; else asked for.")
+@PASSWORD
+def set_password(folder: Path, new: str | None, password: str | None) -> None:
+    """Set or change the password of the protected variables (#6000 to #6999)."""
+    from aircut.cli import remembering
+
+    remembering.set_password(folder, new, password)
+
+
 def main() -> None:
     """Entry point."""
     try:

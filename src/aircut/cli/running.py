@@ -14,7 +14,7 @@ from aircut.canon import Recording
 from aircut.cli import common
 from aircut.diagnostics import Diagnostic
 from aircut.interpreter.running import Mode, Run, Start
-from aircut.machine import Machine, MachineError, stops
+from aircut.machine import Machine, MachineError, store
 
 if TYPE_CHECKING:
     from aircut.controller import Simulation
@@ -30,19 +30,12 @@ def run(file: Path, style: str, output: Path | None, options: dict[str, Any]) ->
         return 1
     policy = common.policy(file, options)
     simulation = simulated(made, options)
-    if output is None:
-        report(made, simulation, style, sys.stdout, options, policy)
-    else:
-        from aircut.files import replacing
-
-        try:
-            with replacing(output) as out:
-                report(made, simulation, style, out, options, policy)
-        except OSError as error:
-            raise click.ClickException(f"cannot write {output}: {error.strerror}") from None
+    try:
+        told(made, simulation, style, output, options, policy)
+    finally:  # whatever ends the run, the machine remembers
+        common.remember(options, machine, made)
     if style != "json" or output is not None:
         common.show(made.diagnostics, common.lines_of(made), sys.stderr)
-    common.remember(options, machine, made)
     return int(made.failed)
 
 
@@ -56,7 +49,7 @@ def beginning(options: dict[str, Any], machine: Machine, file: Path) -> tuple[Mo
     if machine.folder is None:
         raise click.UsageError("--resume needs a machine's folder (--machine), where the stop is remembered")
     try:
-        stop = stops.last(machine.folder)
+        stop = store.recall(machine.folder).stop
     except MachineError as error:
         raise click.UsageError(str(error)) from None
     if stop is None or Path(stop.program).resolve() != file.resolve():
@@ -65,6 +58,27 @@ def beginning(options: dict[str, Any], machine: Machine, file: Path) -> tuple[Mo
     if line is not None:
         return Mode.RESUME_FROM_LINE, Start(line, 0, stop)
     return Mode.RESUME, Start(stop.line, stop.moves, stop)
+
+
+def told(
+    made: Run,
+    simulation: Simulation | None,
+    style: str,
+    output: Path | None,
+    options: dict[str, Any],
+    policy: rules.Policy,
+) -> None:
+    """Run, and report to the terminal or a file. Raises click.ClickException."""
+    if output is None:
+        report(made, simulation, style, sys.stdout, options, policy)
+        return
+    from aircut.files import replacing
+
+    try:
+        with replacing(output) as out:
+            report(made, simulation, style, out, options, policy)
+    except OSError as error:
+        raise click.ClickException(f"cannot write {output}: {error.strerror}") from None
 
 
 def simulated(made: Run, options: dict[str, Any]) -> Simulation | None:

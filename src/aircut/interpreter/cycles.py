@@ -175,7 +175,9 @@ def conversation(cycle: Cycle, m: State, w: Words) -> Generator[Request, Any, No
     hole = measure(sticky, normal, m, w)
     repeats = repeats_of(m, w)
     if repeats * (hole.top - hole.bottom) > MOST * (hole.bite or 1e9):
-        raise out_of_range(sticky.words, "q", "so many bites are a mistake")
+        if hole.bite:
+            raise out_of_range(sticky.words, "q", "so many bites are a mistake")
+        raise out_of_range(sticky.words, "r", "it leads beyond all machines")
     m.cycle = sticky
     if repeats:
         yield from drive(cycle.steps, hole, sticky.level, repeats, m, w)

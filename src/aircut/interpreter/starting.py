@@ -59,7 +59,7 @@ def remembered(m: State) -> dict[int, float]:
         if row.kept:
             for number in range(row.first, row.last + 1):
                 value = m.numbered[number]
-                if value is None:
+                if value is None or value != value:  # null, or the constant that counts as null
                     kept.pop(number, None)
                 else:
                     kept[number] = value

@@ -257,11 +257,12 @@ def load(folder: Path) -> Machine:
     own = folder / "tools.toml"
     tools = load_tools(own) if own.exists() else {}
     machine = Machine(file, tools, own.exists(), [folder / "macros"], folder)
-    from aircut.machine import memory
+    from aircut.machine import store
 
     machine.library = dict(machine.tools)
-    machine.variables, changed = memory.recall(folder)
-    machine.tools |= changed
+    stored = store.recall(folder)
+    machine.variables = stored.variables
+    machine.tools |= stored.tools
     return machine
 
 

@@ -1,6 +1,6 @@
-"""What a machine remembers between runs: numbered variables, and tools that programs have changed.
+"""Which numbered variables outlive a run, and LinuxCNC's parameter files that hold them.
 
-In its own folder they lie in state.db; a LinuxCNC parameter file (lines of a
+A machine's folder has them in state.db (see store); a parameter file (lines of a
 number and a value) can be read and written in its place. Values are kept as the
 machine stores them: mm and degrees.
 """
@@ -9,14 +9,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from contextlib import closing
 from pathlib import Path
-
-import msgspec
 
 from aircut.files import replacing
 from aircut.machine.config import MachineError
-from aircut.machine.tools import Tool
 
 #: Numbered variables that outlive a run (AMB-VAR-3, AMB-VAR-20).
 PERSISTENT = (
@@ -30,53 +26,8 @@ PERSISTENT = (
 #: Tables that the user fills in and programs read.
 GIVEN = (*range(100, 500), *range(6000, 7000))
 
-SCHEMA = (
-    "CREATE TABLE IF NOT EXISTS variables (number INTEGER PRIMARY KEY, value REAL NOT NULL)",
-    "CREATE TABLE IF NOT EXISTS tools (id INTEGER PRIMARY KEY, tool TEXT NOT NULL)",  # as JSON
-)
-
-
-def recall(folder: Path) -> tuple[dict[int, float], dict[int, Tool]]:
-    """Variables, and tools that programs have changed, of a machine's folder; none without a state.db.
-
-    Raises MachineError.
-    """
-    import sqlite3
-
-    path = folder / "state.db"
-    if not path.exists():
-        return {}, {}
-    try:
-        with closing(sqlite3.connect(path)) as database, database:
-            for statement in SCHEMA:
-                database.execute(statement)
-            variables = dict(database.execute("SELECT number, value FROM variables").fetchall())
-            rows = database.execute("SELECT tool FROM tools").fetchall()
-        tools = [msgspec.json.decode(text, type=Tool) for (text,) in rows]
-    except (sqlite3.Error, msgspec.MsgspecError) as error:
-        raise MachineError(f"{path}: {error}") from None
-    return variables, {tool.id: tool for tool in tools}
-
-
-def remember(folder: Path, variables: dict[int, float], tools: dict[int, Tool]) -> None:
-    """Write variables and changed tools to state.db, in one transaction; what is not given is dropped.
-
-    Raises MachineError.
-    """
-    import sqlite3
-
-    path = folder / "state.db"
-    rows = [(tool.id, msgspec.json.encode(tool).decode()) for tool in tools.values()]
-    try:
-        with closing(sqlite3.connect(path)) as database, database:
-            for statement in SCHEMA:
-                database.execute(statement)
-            database.execute("DELETE FROM variables")
-            database.executemany("INSERT INTO variables VALUES (?, ?)", sorted(variables.items()))
-            database.execute("DELETE FROM tools")
-            database.executemany("INSERT INTO tools VALUES (?, ?)", rows)
-    except sqlite3.Error as error:
-        raise MachineError(f"{path}: {error}") from None
+#: Those among them that change with the machine's password only.
+PROTECTED = range(6000, 7000)
 
 
 def read_parameters(path: Path, known: Iterable[int]) -> dict[int, float]:
