@@ -133,3 +133,51 @@ def test_the_tip_keeps_to_its_arcs(model: int, plane: int, o: int, i: int) -> No
 def test_not_without_the_feature() -> None:
     result = aircut.loads("G43.4 H1\nM2\n").run(machine(2, rtcp=False))
     assert [d.code for d in result.diagnostics if d.severity.value == "error"] == ["no-rtcp"]
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_toolpath_tells_where_the_tip_is_on_the_part(model: int) -> None:
+    """Lines keep their ends, whatever the rotary axes do; the tool's axis is where the matrices put it."""
+    first, second = LETTERS[model].upper()
+    program = f"""G43.4 H1
+G1 X10 Y20 Z30 F500
+G1 X10 Y20 Z30 {first}40 {second}-70
+G1 X-50 Y0 Z5 {first}-10
+G49
+G1 {first}30
+M2
+"""
+    result = aircut.loads(program).run(machine(model))
+    toolpath = result.toolpath
+    starts, ends = toolpath.tips()
+    axes = toolpath.tool_axes()
+    last = {line: np.flatnonzero(toolpath.line == line)[-1] for line in range(2, 7) if line != 5}
+    assert ends[last[2]] == pytest.approx([10, 20, 30], abs=1e-9)
+    assert ends[last[3]] == pytest.approx([10, 20, 30], abs=1e-9)
+    assert ends[last[4]] == pytest.approx([-50, 0, 5], abs=1e-9)
+    under = toolpath.line < 6
+    assert starts[1:][under[1:]] == pytest.approx(ends[:-1][under[1:]], abs=1e-9)
+    made = setup(model)
+    for line, o, i in ((2, 0.0, 0.0), (3, 40.0, -70.0), (4, -10.0, -70.0), (6, 30.0, -70.0)):
+        angles = {"a": 0.0, "b": 0.0, "c": 0.0, first.lower(): o, second.lower(): i}
+        # A tool longer by 1 mm asks for axes that differ by the tool's axis, seen from the machine; the part is turned.
+        longer = made._replace(tool_z=made.tool_z + 1.0)
+        pose = tuple(angles[letter] for letter in "abc")
+        there = composed(made, np.zeros(3), angles)
+        tip = np.array(forward(longer, there, pose))
+        assert axes[last[line]] == pytest.approx(-tip, abs=1e-9)
+    # After G49 the holder is followed: where the tip was, and the tool's length along its axis.
+    begin = starts[last[6]]
+    assert np.linalg.norm(begin - [-50, 0, 5]) == pytest.approx(np.linalg.norm(TOOL))
+    _, machine_ends = toolpath.machine_axes()
+    assert machine_ends[last[6]][:3] == pytest.approx(machine_ends[last[4]][:3])
+
+
+def test_rows_take_as_long_as_the_tip() -> None:
+    """F is the tip's speed on the part: time is its way over F, or degrees over F where it stands still."""
+    program = "G43.4 H1\nG0 X100 Y0 Z0\nG1 X150 A30 C-100 F250\nG1 A0 F90\nG3 X-150 I-150 C0 F600\nM2\n"
+    result = aircut.loads(program).run(machine(2))
+    toolpath = result.toolpath
+    minutes = toolpath.lengths() / np.where(toolpath.feed > 0, toolpath.feed, np.inf)
+    for line, wanted in ((3, 50 / 250), (4, 30 / 90), (5, math.pi * 150 / 600)):
+        assert minutes[toolpath.line == line].sum() == pytest.approx(wanted, rel=1e-4)

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 from aircut.canon.commands import COMMANDS
+from aircut.canon.tips import setups_of
 from aircut.canon.toolpath import ROW, Toolpath
 
 CHUNK = 1 << 16  # moves a chunk
@@ -58,6 +59,11 @@ class Events:
 
     def __iter__(self) -> Iterator[Event]:
         return (self[index] for index in range(len(self)))
+
+    def named(self, *names: str) -> Iterator[Event]:
+        """The events of these names, in order."""
+        wanted = {NUMBERS[name] for name in names}
+        return (self[index] for index, number in enumerate(self.name) if number in wanted)
 
     def extend(self, other: Events) -> None:
         for name in self.__slots__:
@@ -172,7 +178,7 @@ class Recording:
     def toolpath(self) -> Toolpath:
         """The moves as columns."""
         if self._toolpath is None:
-            self._toolpath = Toolpath.of_rows(self.chunks)
+            self._toolpath = Toolpath.of_rows(self.chunks, setups=setups_of(self.events))
         return self._toolpath
 
     @property

@@ -7,11 +7,13 @@ afterwards, so that nothing in bulk is ever a Python object.
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from aircut.canon import tips
 from aircut.geometry import arcs
+from aircut.geometry.kinematics import Setup
 
 if TYPE_CHECKING:
     import numpy as np
@@ -86,7 +88,9 @@ class Toolpath:
 
     Positions are those of the controlled point (the tool's tip when its length is
     compensated) in machine coordinates, millimeters and degrees. A move starts
-    where the one before ended, the first one at `start`.
+    where the one before ended, the first one at `start`. Under tool center point
+    control (flag TIP) they are the axes' less the tool's offset, and a programmed
+    move is as many rows as keep the tip on its way (flag PART on all but the last).
     """
 
     x: NDArray[np.float64]
@@ -106,14 +110,28 @@ class Toolpath:
     plane: NDArray[np.uint8]
     flags: NDArray[np.uint16]
 
-    def __init__(self, columns: dict[str, NDArray[Any]], start: Iterable[float] = (0.0,) * 6) -> None:
-        """columns: one array a column of COLUMNS, all of one length. start: six positions, mm and degrees."""
+    def __init__(
+        self,
+        columns: dict[str, NDArray[Any]],
+        start: Iterable[float] = (0.0,) * 6,
+        setups: Sequence[tuple[int, Setup]] = (),
+    ) -> None:
+        """columns: one array a column of COLUMNS, all of one length. start: six positions, mm and degrees.
+
+        setups: tool offsets and, under tool center point control, kinematics: from which move on.
+        """
         self.start = tuple(start)
+        self.setups = setups
         self.columns = columns
         self.__dict__.update(columns)
 
     @classmethod
-    def of_rows(cls, chunks: list[bytes], start: Iterable[float] = (0.0,) * 6) -> Toolpath:
+    def of_rows(
+        cls,
+        chunks: list[bytes],
+        start: Iterable[float] = (0.0,) * 6,
+        setups: Sequence[tuple[int, Setup]] = (),
+    ) -> Toolpath:
         """From packed rows (ROW); the list is emptied on the way to spare memory."""
         import numpy as np
 
@@ -126,7 +144,7 @@ class Toolpath:
             for name, column in columns.items():
                 column[at - len(rows) : at] = rows[name]
             at -= len(rows)
-        return cls(columns, start)
+        return cls(columns, start, setups)
 
     def __len__(self) -> int:
         return len(self.kind)
@@ -145,6 +163,21 @@ class Toolpath:
         import numpy as np
 
         return np.vstack([np.asarray(self.start)[None, :], self.ends()[:-1]])[: len(self)]
+
+    def tips(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Starts and ends of the moves as the part sees them, (n, 3) mm: where the tool's tip is on it.
+
+        That differs from machine coordinates where the run told five-axis kinematics (G43.4, G43.7).
+        """
+        return tips.tips(self)
+
+    def tool_axes(self) -> NDArray[np.float64]:
+        """The tool's axis at the ends of the moves as the part sees it, (n, 3): from the tip to the holder."""
+        return tips.directions(self)
+
+    def machine_axes(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Where the machine's axes stand at the starts and ends, the tool's offset included, (n, 6) mm and degrees."""
+        return tips.axes(self)
 
     def arcs(self) -> Iterator[tuple[int, NDArray[np.intp], NDArray[Any], NDArray[Any], NDArray[Any]]]:
         """The arcs of each plane: plane, their indices (k,), start, end and center (k, 3) along u, v, w, mm."""

@@ -39,7 +39,7 @@ FEED = int(Kind.FEED)
 FEW = 64
 
 
-def scratch(count: int) -> tuple[memoryview, memoryview, memoryview]:
+def scratch(count: int) -> tuple[memoryview, Any, Any]:
     """Memory for the start of a move and so many rows, as bytes, numbers and words."""
     rows = memoryview(bytearray((count + 1) * ROW.size))
     return rows, rows.cast("d"), rows.cast("q")

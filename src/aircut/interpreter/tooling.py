@@ -45,7 +45,7 @@ def compensate(m: State, offset: list[float], tool: Tool, control: Control | Non
     m.compensated_tool = tool
     m.position = m.to_program(m.of_axes(axes))
     m.out.event("USE_TOOL_LENGTH_OFFSET", *offset, 0.0, 0.0, 0.0)
-    if before != m.setup:
+    if before is not None or m.setup is not None:
         path.set_stage(m, "rtcp", control)
         m.out.event("TOOL_CENTER_POINT", *(m.setup or Setup(0)))
 

@@ -238,7 +238,7 @@ def kink(
     most: cython.double
     for i in range(6):
         jump = fabs(ways[12 * after + i] - ways[12 * before + 6 + i])
-        if jump > 0.2 or cycle == 0.0 and jump > 1e-9:  # a corner: nothing is gained by not stopping
+        if jump > 0.2 or (cycle == 0.0 and jump > 1e-9):  # a corner: nothing is gained by not stopping
             return 0.0
         if jump > 1e-9:
             most = share * cycle * limits[6 + i] / jump
