@@ -73,6 +73,8 @@ def machine(case: Case, folder: Path) -> Machine:
     made = load(folder) if "machine.toml" in case.files else built_in(case.head.get("axes", "XYZ"))
     if "error-on-missing-feed" in case.head.get("options", ""):
         made.options = msgspec.structs.replace(made.options, missing_feed="error")
+    if entry := re.search(r"entry=(\w+)", case.head.get("options", "")):
+        made.options = msgspec.structs.replace(made.options, entry=entry[1])
     for pair in case.head.get("parameters", "").split():
         number, value = pair.split("=")
         made.variables[int(number)] = float(value)

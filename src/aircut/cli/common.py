@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import IO, Any
 
 import click
+import msgspec
 
 from aircut import dialects
 from aircut.diagnostics import Diagnostic, Severity, Span
@@ -44,6 +45,8 @@ def machine(options: dict[str, Any]) -> Machine:
             made = dialects.machine(dialect(options), options["axes"] or "")
         made.macros = (*options["macros"], *made.macros)
         made.key = options["key"]
+        if options["entry"]:
+            made.options = msgspec.structs.replace(made.options, entry=options["entry"])
         if options["tools"]:
             from aircut.machine.imports import read_library
 

@@ -39,6 +39,8 @@ def machine_options(command: Any) -> Any:
                      help="Unit of a LinuxCNC .tbl, which does not name its own."),
         click.option("--key", envvar="AIRCUT_KEY", metavar="KEY", help="Key of encrypted macros (or AIRCUT_KEY)."),
         click.option("--macros", type=FOLDER, multiple=True, metavar="DIR", help="Folder of macro files; repeatable."),
+        click.option("--entry", type=click.Choice(["nist", "easy", "normal"]), default=None,
+                     help="How cutter compensation begins, and whether what the tool cannot reach is left out."),
         click.option("--axes", default=None, metavar="LETTERS", help="Axes of the built-in machine, as XYZA."),
         click.option("--machine", "folder", type=FOLDER, metavar="DIR", help="The machine's folder."),
         click.option("--dialect", type=click.Choice(["rosetta", "linuxcnc"]), default="rosetta", show_default=True),

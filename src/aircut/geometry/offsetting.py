@@ -10,12 +10,15 @@ from __future__ import annotations
 from math import atan2, hypot, pi, sqrt
 from typing import NamedTuple
 
+from aircut.geometry.arcs import sweep
+
 Point = tuple[float, float]
 Vector = tuple[float, float]
 
 PARALLEL = 1e-12  # sine of the angle below which lines do not meet
 TOUCH = 1e-9  # part of the radius by which curves may miss each other and still touch
 STRAIGHT_BACK = 1e-9  # radians from a half turn
+TINY = 1e-7  # mm by which a crossing may lie beyond the ends of what crosses
 
 
 class Element(NamedTuple):
@@ -52,9 +55,9 @@ def heading(element: Element, point: Point) -> Vector:
     return du / length, dv / length
 
 
-def beside(point: Point, direction: Vector, away: float) -> Point:
+def beside(point: Point, direction: Vector, left: float) -> Point:
     """The point at a distance to the left of another."""
-    return point[0] - away * direction[1], point[1] + away * direction[0]
+    return point[0] - left * direction[1], point[1] + left * direction[0]
 
 
 def turn(before: Vector, after: Vector) -> float:
@@ -77,16 +80,21 @@ def corner(first: Element, second: Element, side: int) -> float:
     return angle
 
 
-def offset(element: Element, away: float) -> Element | None:
+def offset(element: Element, left: float) -> Element | None:
     """The parallel element to the left; None for an arc whose radius is not larger than it."""
     if element.center is None:
         direction = heading(element, element.end)
-        return Element(beside(element.start, direction, away), beside(element.end, direction, away))
-    if element.radius - element.sign * away <= 0.0:
+        return Element(beside(element.start, direction, left), beside(element.end, direction, left))
+    if element.radius - element.sign * left <= 0.0:
         return None
-    start = beside(element.start, heading(element, element.start), away)
-    end = beside(element.end, heading(element, element.end), away)
+    start = beside(element.start, heading(element, element.start), left)
+    end = beside(element.end, heading(element, element.end), left)
     return element._replace(start=start, end=end)
+
+
+def square_end(element: Element, left: float) -> Point:
+    """The point beside the end."""
+    return beside(element.end, heading(element, element.end), left)
 
 
 def crossings(first: Element, second: Element) -> list[Point]:
@@ -139,6 +147,53 @@ def pair(origin: Point, direction: Vector, along: float, square: float, radius: 
         return []
     half = sqrt(max(square, 0.0))
     return [(origin[0] + t * direction[0], origin[1] + t * direction[1]) for t in (along - half, along + half)]
+
+
+def along(element: Element, point: Point) -> float:
+    """How far along the element a point of its line or circle lies, mm; below zero before its start.
+
+    On an arc the place is the first after the start; one less than TOUCH before it counts as the start.
+    """
+    if element.center is None:
+        d = heading(element, element.end)
+        return (point[0] - element.start[0]) * d[0] + (point[1] - element.start[1]) * d[1]
+    if distance(element.start, point) < TOUCH * element.radius:
+        return 0.0
+    return element.radius * abs(sweep(element.start, point, element.center, element.sign))
+
+
+def length(element: Element) -> float:
+    if element.center is None:
+        return distance(element.start, element.end)
+    return element.radius * abs(sweep(element.start, element.end, element.center, element.turns))
+
+
+def meetings(first: Element, second: Element) -> list[Point]:
+    """Where two elements themselves meet, the last along the first one first."""
+    found = [
+        (along(first, point), point)
+        for point in crossings(first, second)
+        if all(-TINY < along(one, point) < length(one) + TINY for one in (first, second))
+    ]
+    return [point for _, point in sorted(found, reverse=True)]
+
+
+def away(element: Element, point: Point) -> float:
+    """Distance of a point from the element."""
+    ends = min(distance(point, element.start), distance(point, element.end))
+    if element.center is None:
+        at = along(element, point)
+        if not 0.0 < at < length(element):
+            return ends
+        d = heading(element, element.end)
+        return abs(d[0] * (point[1] - element.start[1]) - d[1] * (point[0] - element.start[0]))
+    radius = distance(point, element.center)
+    if radius == 0.0:
+        return element.radius
+    foot = tuple(c + (p - c) * element.radius / radius for c, p in zip(element.center, point, strict=True))
+    if along(element, (foot[0], foot[1])) > length(element):
+        return ends
+    return abs(radius - element.radius)
 
 
 def nearest(points: list[Point], place: Point) -> Point | None:

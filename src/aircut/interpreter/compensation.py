@@ -20,19 +20,19 @@ from aircut.geometry import arcs
 from aircut.geometry.offsetting import (
     Element,
     Point,
-    beside,
     center_between,
     corner,
     crossings,
     heading,
     nearest,
     offset,
+    square_end,
 )
 from aircut.interpreter.path import Onward, Place, flush
 from aircut.interpreter.state import State
 from aircut.interpreter.table import Code
 
-TRAVERSE, ARC = int(Kind.TRAVERSE), int(Kind.ARC)
+TRAVERSE, FEED, ARC = int(Kind.TRAVERSE), int(Kind.FEED), int(Kind.ARC)
 STILL = 1e-9  # mm: shorter steps in the plane are none
 GROWTH = 0.0254  # radians by which an arc may grow when it is cut back, as by rounded programs
 
@@ -124,8 +124,7 @@ class Compensation:
         self.contour = move.end
         self.tool = self.flat(move.end)
         if move.element is not None:
-            ahead = heading(move.element, move.element.end)
-            self.tool = beside(move.element.end, ahead, self.side * self.radius)
+            self.tool = square_end(move.element, self.side * self.radius)
         m.position = m.to_program(move.end)
 
     def carry(self, m: State, move: Move, onward: Onward) -> None:
@@ -170,14 +169,7 @@ class Compensation:
         assert move.element is not None
         path = offset(move.element, self.side * self.radius)
         if path is None:
-            before = self.held.move if self.held else None
-            raise Refusal(
-                F.GOUGING_ARC,
-                radius=self.radius / m.unit,
-                arc=move.element.radius / m.unit,
-                first=place_of(m, before),
-                second=place_of(m, move),
-            )
+            raise self.too_small(m, self.held.move if self.held else None, move)
         return path
 
     def cut_back(self, m: State, held: Held, move: Move, path: Element) -> Point:
@@ -194,7 +186,7 @@ class Compensation:
         if move.kind == TRAVERSE:
             self.write(m, joint, start, None, 0, onward)
         else:
-            self.write(m, joint._replace(kind=ARC), start, move.element.start, -self.side, onward)
+            self.write(m, joint, start, move.element.start, -self.side, onward)
 
     def hold(
         self, m: State, move: Move, path: Element, guide: Element, before: Move | None = None, first: bool = False
@@ -224,6 +216,11 @@ class Compensation:
             F.GOUGING_CORNER, radius=self.radius / m.unit, first=place_of(m, first), second=place_of(m, second)
         )
 
+    def too_small(self, m: State, before: Move | None, move: Move) -> Refusal:
+        assert move.element is not None
+        radius, arc = self.radius / m.unit, move.element.radius / m.unit
+        return Refusal(F.GOUGING_ARC, radius=radius, arc=arc, first=place_of(m, before), second=place_of(m, move))
+
     # --- writing
 
     def write(self, m: State, move: Move, end: Point, center: Point | None, turns: int, onward: Onward) -> None:
@@ -235,7 +232,7 @@ class Compensation:
         line, file, tool = out.line, out.file, m.tool
         out.line, out.file, m.tool = move.line, move.file, move.tool
         if center is None:
-            onward.line(m, move.kind, goal, move.speed, move.flags)
+            onward.line(m, FEED if move.kind == ARC else move.kind, goal, move.speed, move.flags)
         else:
             onward.arc(m, goal, (center[0] + du, center[1] + dv), turns, move.speed, move.flags)
         out.line, out.file, m.tool = line, file, tool
@@ -277,8 +274,7 @@ class Easy(Nist):
     def enter(self, m: State, move: Move) -> None:
         element = move.element
         assert element is not None
-        ahead = heading(element, element.end)
-        way = entry(element, beside(element.end, ahead, self.side * self.radius), self.tool)
+        way = entry(element, square_end(element, self.side * self.radius), self.tool)
         self.hold(m, move, way, way, None, True)
 
     def join(self, m: State, move: Move, onward: Onward) -> None:
@@ -295,10 +291,6 @@ class Easy(Nist):
     def check(self, m: State, held: Held, end: Point) -> None:
         if not held.first:
             super().check(m, held, end)
-
-
-#: By the machine's option.
-ENTRIES: dict[str, type[Compensation]] = {"nist": Nist, "easy": Easy}
 
 
 def before(m: State, row: Code) -> None:

@@ -10,15 +10,18 @@ from functools import partial
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter import path
-from aircut.interpreter.compensation import ENTRIES
+from aircut.interpreter.compensation import Compensation, Easy, Nist
 from aircut.interpreter.path import Onward, Place
 from aircut.interpreter.state import State, out_of_range, whole
 from aircut.interpreter.table import Code, Group, Order, Words
 from aircut.interpreter.tooling import tool_of
+from aircut.interpreter.trimming import Normal
 
 SLOT = "compensation"
 XZ, YZ = 1, 2  # planes
 ORIENTATIONS = 9  # the highest
+#: By the machine's option (AMB-CMP-5).
+ENTRIES: dict[str, type[Compensation]] = {"nist": Nist, "easy": Easy, "normal": Normal}
 #: Control point of a lathe tool from its nose's center, in radii, Z and X; 0 and 9 are the center (AMB-CMP-4).
 SHIFTS = ((0, 0), (1, -1), (-1, -1), (-1, 1), (1, 1), (1, 0), (0, -1), (-1, 0), (0, 1), (0, 0))
 
