@@ -151,7 +151,8 @@ class Writer:
             if pick < 0.2:
                 lines.append(self.random.choice(("G98", "G99")))
             elif pick < 0.3:
-                lines.append(self.offset())
+                # Another R too: sums of offsets round, and the height may come out above R by nothing.
+                lines.append(f"{self.offset()}\n{first}{self.number()} R{self.number(9, 12)}7")
             elif pick < 0.35:
                 lines.append(self.units())
             elif pick < 0.4:

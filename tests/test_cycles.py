@@ -1,18 +1,11 @@
 """Canned cycles: what a case file cannot say."""
 
-from pathlib import Path
-
 import msgspec
 import pytest
 
 import aircut
-import oracle
 from aircut.canon import BY_HAND, EXACT_PATH, EXACT_STOP, Kind
-from aircut.interpreter.interpreter import Interpreter
-from aircut.interpreter.rosetta import ROSETTA
-from aircut.interpreter.table import CycleRules, Dialect, PolarRules
 from aircut.machine import built_in
-from aircut.source import Source
 
 
 def test_peck_retract_is_the_machine_s() -> None:
@@ -41,32 +34,3 @@ def test_a_million_bites_are_refused_at_once() -> None:
     result = aircut.loads("F100\nG83 Z-1000 R0 Q1 L1001\nM2\n").run()
     assert [d.code for d in result.diagnostics] == ["bad-value"]
     assert not aircut.loads("F100\nG83 Z-10 R0 Q1 L3\nM2\n").run().diagnostics
-
-
-def codes(text: str, dialect: Dialect) -> list[str]:
-    """Codes of the diagnostics of a program in a dialect."""
-    interpreter = Interpreter(Source("<text>", text.encode()), dialect, built_in("XYZA"))
-    for _ in interpreter.run():
-        pass
-    return [d.code for d in interpreter.diagnostics if d.code != "no-program-end"]
-
-
-@pytest.mark.parametrize(
-    ("text", "code"),
-    [
-        ("G81 X1 Z-1 R1 L0", "bad-value"),
-        ("G81 X1 Z-1 R1 A0", "cycle-rotary"),
-        ("G82 X1 Z-1 R1", "missing-word"),
-        ("G89 X1 Z-1 R1", "missing-word"),
-        ("G0 @10", "polar-pole"),
-        ("G18\nG0 @10 ^5", "polar-plane"),
-    ],
-)
-def test_a_dialect_may_be_stricter(text: str, code: str, tmp_path: Path) -> None:
-    """What RosettaCNC's language takes and LinuxCNC's refuses is a field of the dialect."""
-    strict = ROSETTA._replace(cycles=CycleRules(dwell=True, none=False, still=False), polar=PolarRules(False, False))
-    text = f"G21 G98 F100\n{text}\nM2\n"
-    assert codes(text, ROSETTA) == []
-    assert codes(text, strict) == [code]
-    if oracle.PROGRAM:
-        assert not oracle.ask(text, tmp_path)[1]

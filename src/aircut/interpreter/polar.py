@@ -37,8 +37,6 @@ def place(m: State, w: Words, goal: list[float]) -> bool:
     angle = degrees(atan2(y, x)) if radius > POLE else 0.0  # signed zeros have angles, too
     if m.absolute:
         if radius_word in w:
-            if radius <= POLE and angle_word not in w and not m.dialect.polar.pole:
-                raise Refusal(F.POLAR_POLE, radius_word)
             radius = w[radius_word] * m.unit
         angle = w.get(angle_word, angle)
     else:
@@ -52,11 +50,9 @@ def place(m: State, w: Words, goal: list[float]) -> bool:
 
 
 def refuse_company(m: State, w: Words, plane_words: str) -> None:
-    """Refuse @ and ^ beside the plane's own words, with G53, and in planes where they mean nothing."""
+    """Refuse @ and ^ beside the plane's own words, and with G53."""
     if m.machine_frame:
         raise Refusal(F.POLAR_MACHINE, RADIUS if RADIUS in w else ANGLE)
-    if m.plane and not m.dialect.polar.planes:
-        raise Refusal(F.POLAR_PLANE, RADIUS if RADIUS in w else ANGLE)
     for letter in plane_words:
         if letter in w:
             raise Refusal(F.POLAR_MIX, letter, word=letter.upper())

@@ -11,7 +11,7 @@ from aircut.interpreter import (
     auxiliary,
     calls,
     cutter,
-    cycles,
+    drilling,
     inputs,
     messages,
     modes,
@@ -44,7 +44,7 @@ LATER = (
 
 CODES = (
     *motion.CODES,
-    *cycles.CODES,
+    *drilling.CODES,
     *modes.CODES,
     *cutter.CODES,
     *offsets.CODES,

@@ -166,21 +166,6 @@ class CutterRules(NamedTuple):
     zero_is_loaded: bool = False  # D0 means the loaded tool, not the radius 0
 
 
-class CycleRules(NamedTuple):
-    """How a dialect's canned cycles are more or less strict."""
-
-    dwell: bool = False  # P must be given where it is taken; else it is 0
-    none: bool = True  # L0 drills nothing; else it is refused
-    still: bool = True  # a rotary word that does not move may stand; else it is refused
-
-
-class PolarRules(NamedTuple):
-    """How a dialect's polar words are more or less strict."""
-
-    planes: bool = True  # in any plane; else in XY alone
-    pole: bool = True  # a radius alone is meant along the first axis at the pole; else it is refused there
-
-
 class Dialect(NamedTuple):
     """A language: its tables and the switches of its grammar."""
 
@@ -198,7 +183,5 @@ class Dialect(NamedTuple):
     settings: Mapping[int, Code]  # G10's L numbers
     no_variable: str  # hint for numbers outside all ranges
     cutter: CutterRules = CutterRules()
-    cycles: CycleRules = CycleRules()
-    polar: PolarRules = PolarRules()
     axes: str = "XYZ"  # of the machine that serves when none is given
     tools: tuple[Tool, ...] = ()  # that this machine has, if not the built-in ones
