@@ -28,6 +28,7 @@ from aircut.interpreter.state import State, out_of_range, whole
 from aircut.interpreter.table import AXES, Code, Group, Order, Words
 
 MOST = 1_000_000  # holes or bites of one block: beyond, a word is mistaken
+LEAST_BITE = 1e-12  # of the height: floating-point numbers have no smaller steps
 DEPTH = "w"  # key of the depth among the sticky words, whatever the tool's axis
 STANDING = 5  # State.spindle after M5
 STARTS = {3: "START_SPINDLE_CLOCKWISE", 4: "START_SPINDLE_COUNTERCLOCKWISE"}
@@ -114,7 +115,7 @@ def measure(sticky: Sticky, normal: int, m: State, w: Words) -> Hole:
             value, wanted = words[key], "it leads beyond all machines"
             raise Refusal(F.BAD_VALUE, letter, word=letter.upper(), value=value, wanted=wanted)
     bite, dwell = words.get("q", 0.0), words.get("p", 0.0)
-    if "q" in words and bite <= 0.0:
+    if "q" in words and bite <= LEAST_BITE * max(abs(top), abs(bottom)):  # such a bite gets no deeper
         raise out_of_range(words, "q", "the depth of a bite is above zero")
     if dwell < 0.0:
         raise out_of_range(words, "p", "seconds, not negative")
