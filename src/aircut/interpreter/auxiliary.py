@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from aircut.diagnostics import Refusal, Severity
 from aircut.diagnostics import faults as F
-from aircut.interpreter.calls import Call
+from aircut.interpreter.calls import Call, go
 from aircut.interpreter.requests import Pause, Request
 from aircut.interpreter.state import State, out_of_range, whole
 from aircut.interpreter.table import Code, Group, Order, Words
@@ -84,7 +84,7 @@ def shuttle(m: State, w: Words) -> None:
     m.stop_code = 60.0
     m.out.event("PALLET_SHUTTLE")
     if m.machine.options.pallet_shuttle:
-        m.transfer = Call(PALLET_SHUTTLE, False, 1, None, file=True)
+        go(m, Call(PALLET_SHUTTLE, False, 1, None, file=True))
 
 
 def torch(on: bool, m: State, w: Words) -> None:

@@ -41,6 +41,12 @@ class Return(NamedTuple):
     """Back to the caller."""
 
 
+def go(m: State, transfer: Call | Return) -> None:
+    """Where control goes after the block: behind a tool change by macro, if the block has one."""
+    before = m.transfer
+    m.transfer = before._replace(then=transfer) if isinstance(before, Call) else transfer
+
+
 def callee(w: Words) -> tuple[str, bool]:
     """Name of the called subroutine from the P word, and whether it is a number. Raises Refusal."""
     value: Any = w["p"]
@@ -65,7 +71,7 @@ def repeats(w: Words) -> int:
 def call(m: State, w: Words) -> None:
     """M98 P L: the subroutine shares the caller's #1 to #33."""
     name, numbered = callee(w)
-    m.transfer = Call(name, numbered, repeats(w), None)
+    go(m, Call(name, numbered, repeats(w), None))
 
 
 def macro(m: State, w: Words) -> None:
@@ -107,7 +113,7 @@ def custom(name: str, m: State, w: Words) -> None:
 
 def back(m: State, w: Words) -> None:
     """M99."""
-    m.transfer = Return()
+    go(m, Return())
 
 
 def user(name: str) -> Code:

@@ -696,7 +696,7 @@ class Interpreter(Run):
         if m.macro is not None and m.calls == m.macro_level:
             m.motion = self.dialect.codes["g1" if m.macro_motion else "g0"]
         if level.call.name == TOOL_CHANGE and not m.declared:
-            self.warn(F.TOOL_NOT_DECLARED, tool=m.tool)
+            self.tell_refusal(Refusal(F.TOOL_NOT_DECLARED, tool=m.tool), level.unit, level.line - 1)
         self.unit, self.routine = level.unit, level.routine
         m.out.file = self.files.index(level.unit.source.name)
         m.line = m.out.line = level.line

@@ -118,6 +118,7 @@ def change_tool(m: State, w: Words) -> None:
         slots = [float(m.tools[tool].slot) if tool in m.tools else 0.0 for tool in (m.selected_tool, m.tool)]
         numbers = (float(m.selected_tool), slots[0], float(m.tool), slots[1])
         m.tool_code = 6.0
+        m.declared = False
         m.transfer = Call(TOOL_CHANGE, False, 1, None, numbers)
         return
     m.out.event("START_CHANGE")
