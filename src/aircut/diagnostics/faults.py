@@ -201,6 +201,15 @@ NO_PROGRAM_END = Fault("no-program-end", "the program has no M2 or M30: it ends 
 POLAR_MIX = Fault("polar-mix", "{word} together with a polar word", "@ and ^ stand for both axes of the plane")
 POLAR_MACHINE = Fault("polar-machine", "polar words with G53", "G53 takes positions of the machine's axes")
 POLAR_POLE = Fault("polar-pole", "an incremental polar move cannot start at the pole: it has no angle there")
+SCALING_WORDS = Fault(
+    "scaling-words", "G51 needs P, or I, J and K", "P is the factor of all axes; I, J and K are those of X, Y and Z"
+)
+ROTATION_CONFLICT = Fault("rotation-conflict", "{code} cannot be used while {other} is in force", "program G69 before")
+CENTER_TWICE = Fault("center-twice", "{word} and {axis} are the same coordinate of the center", "give one of them")
+ARC_ROTATED = Fault(
+    "arc-rotated", "an arc in the {plane} plane, while G68 turns the {other} plane", "program G69 before"
+)
+TILTED = Fault("tilted", "{code} is not possible in a tilted plane", "program G69 before")
 CYCLE_INVERSE_TIME = Fault("cycle-inverse-time", "{code} cannot run under G93", "program G94 and F before")
 CYCLE_COMPENSATION = Fault("cycle-compensation", "{code} cannot run with cutter compensation", "program G40 before")
 CYCLE_SPINDLE = Fault("cycle-spindle", "{code} needs a turning spindle", "program S and M3 before")

@@ -15,6 +15,7 @@ from aircut.interpreter.path import Onward, Place
 from aircut.interpreter.state import State, out_of_range, whole
 from aircut.interpreter.table import Code, Group, Order, Words
 from aircut.interpreter.tooling import tool_of
+from aircut.interpreter.transforming import mirrored
 from aircut.interpreter.trimming import Normal
 
 SLOT = "compensation"
@@ -69,8 +70,11 @@ def begin(m: State, side: int, radius: float, orientation: int) -> None:
         raise Refusal(F.COMPENSATION_TILTED, "g", mode="with tool center point control", off="G49")
     if m.modal[Group.ROTATION].name == "G68.2":
         raise Refusal(F.COMPENSATION_TILTED, "g", mode="in a tilted plane", off="G69")
-    if radius < 0.0:
-        side, radius = -side, -radius
+    if m.frame is not None and m.frame.rotation is not None and m.frame.rotation.plane != m.plane:
+        raise Refusal(F.COMPENSATION_TILTED, "g", mode="while G68 turns another plane", off="G69")
+    if (radius < 0.0) != mirrored(m.frame, m.plane):
+        side = -side
+    radius = abs(radius)
     m.out.event("COMMENT", f"interpreter: cutter radius compensation on {'left' if side > 0 else 'right'}")
     m.out.at_once = m.dialect.cutter.at_once
     m.compensating = True

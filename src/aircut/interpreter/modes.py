@@ -119,12 +119,6 @@ def continuous(m: State, w: Words) -> None:
     m.out.event("SET_NAIVECAM_TOLERANCE", m.thinning)
 
 
-def off(text: str, m: State, w: Words) -> None:
-    """A code that ends a mode which cannot be on yet: it says so in the listing."""
-    if text:
-        comment(m, text)
-
-
 def overrides(on: bool, m: State, w: Words) -> None:
     """M48, M49: both overrides."""
     set_feed_override(m, int(on))
@@ -174,11 +168,9 @@ CODES = (
     mode("G19", "YZ plane", partial(plane, 2), Group.PLANE),
     mode("G20", "Inches", partial(units, INCH), Group.UNITS),
     mode("G21", "Millimeters", partial(units, 1.0), Group.UNITS),
-    mode("G50", "Scaling off", partial(off, ""), Group.SCALING),
     mode("G61", "Exact path", exact_path, Group.PATH),
     mode("G61.1", "Exact stop", exact_stop, Group.PATH),
     mode("G64", "Continuous path", continuous, Group.PATH, takes="pq"),
-    mode("G69", "Rotation off", partial(off, ""), Group.ROTATION),
     mode("G90", "Absolute distances", partial(distance, True), Group.DISTANCE),
     mode("G91", "Incremental distances", partial(distance, False), Group.DISTANCE),
     mode("G90.1", "Absolute arc centers", partial(arc_distance, True), Group.ARC_DISTANCE),

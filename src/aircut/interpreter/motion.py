@@ -13,7 +13,7 @@ from aircut.canon import EXACT_STOP, INVERSE_TIME, ROW, TIP, Kind
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.geometry import arcs
-from aircut.interpreter import polar, rotary
+from aircut.interpreter import polar, rotary, transforming
 from aircut.interpreter.feeding import TINY, arc_speed, feed_speed, line_speed
 from aircut.interpreter.path import RECORDER
 from aircut.interpreter.state import INCH, PLANES, State, out_of_range, whole
@@ -169,6 +169,8 @@ def arc(turn: int, m: State, w: Words) -> None:
     centered = any(letter in w for letter in CENTER_WORDS)
     if goal is None and not centered and "r" not in w:
         return
+    if m.frame is not None:
+        transforming.check_arc(m)
     turns = turns_of(w)
     axes = arcs.PLANE_AXES[m.plane]
     end = goal or m.position[:]
@@ -192,6 +194,11 @@ def arc(turn: int, m: State, w: Words) -> None:
         m.exact_stop = False
     if m.inverse_time:
         flags |= INVERSE_TIME
+    if m.frame is not None:
+        transforming.write_arc(m, w, end, center, turn * turns, w["r"] * m.unit if "r" in w else None, flags)
+        if m.macro is not None:
+            trigger(m)
+        return
     if m.inverse_time or m.surface_feed:
         radius = hypot(here[0] - center[0], here[1] - center[1])
         around = radius * arcs.sweep(here, there, center, turn * turns)

@@ -16,6 +16,7 @@ from aircut.interpreter.motion import PROBE, at_axes, target, write_axes
 from aircut.interpreter.requests import Probe, Probed, Request
 from aircut.interpreter.state import State
 from aircut.interpreter.table import Code, Group, Order, Words
+from aircut.interpreter.transforming import refuse_tilted
 
 NEAREST = 0.254  # mm: a shorter way is refused
 SUCCESS = 1
@@ -24,6 +25,7 @@ FAILURES = {-1: "the probe did not change before the target", -2: "the probe had
 
 def check(m: State, w: Words, goal: list[float]) -> None:
     """The compile errors, in the order of AMB-PRB-3. Raises Refusal."""
+    refuse_tilted(m, "probing")
     faults: tuple[tuple[bool, Fault], ...] = (
         (m.modal[Group.CUTTER].name != "G40", F.PROBE_COMPENSATION),
         (m.inverse_time, F.PROBE_INVERSE_TIME),

@@ -5,8 +5,6 @@ Sources: 000 and 004 sections 1 and 2; decisions sections 2 to 4 and 19.
 
 from __future__ import annotations
 
-from functools import partial
-
 from aircut.interpreter import (
     auxiliary,
     calls,
@@ -20,27 +18,13 @@ from aircut.interpreter import (
     probing,
     rtcp,
     tooling,
+    transforming,
 )
 from aircut.interpreter.arranging import code_name
 from aircut.interpreter.interpreter import Interpreter
 from aircut.interpreter.named import NAMED
-from aircut.interpreter.state import State
 from aircut.interpreter.system import SYSTEM
-from aircut.interpreter.table import Code, CutterRules, Dialect, Group, Order, Range, Words
-
-
-def unreachable(m: State, w: Words) -> None:
-    raise AssertionError("a code that is not supported was run")
-
-
-later = partial(Code, run=unreachable, supported=False)
-
-#: Codes of the language that cannot be run yet: programs that use them are refused.
-LATER = (
-    later("G51", "Scaling", group=Group.SCALING, order=Order.SCALING, axes=True, takes="ijkp"),
-    later("G68", "Rotation", group=Group.ROTATION, order=Order.ROTATION, axes=True, takes="r"),
-    later("G68.2", "Tilted plane", group=Group.ROTATION, order=Order.ROTATION, axes=True, takes="ijk"),
-)
+from aircut.interpreter.table import Code, CutterRules, Dialect, Range
 
 CODES = (
     *motion.CODES,
@@ -55,7 +39,7 @@ CODES = (
     *messages.CODES,
     *probing.CODES,
     *calls.CODES,
-    *LATER,
+    *transforming.CODES,
 )
 
 #: Named in the documents, or known from relatives of the language, but not in it (AMB-COD-2, AMB-CYC-3).

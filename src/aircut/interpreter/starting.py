@@ -85,6 +85,7 @@ def finish(m: State, end: End) -> None:
     m.system = 0
     local = any(m.local)
     m.local = [0.0] * 6
+    m.set_frame(None)
     m.add_offsets()
     tell_system(m)
     if local:

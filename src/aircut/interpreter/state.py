@@ -6,7 +6,7 @@ in the program's own frame; `to_space` leads to machine coordinates.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from aircut.canon import Recorder
 from aircut.diagnostics import Refusal
@@ -21,21 +21,12 @@ from aircut.machine.tools import EMPTY
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from aircut.interpreter.frame import Frame
     from aircut.interpreter.table import Code, Dialect, Group
 
 INCH = 25.4  # mm
 PLANES = ("XY", "XZ", "YZ")  # by plane number, as canonical commands name them
 WORK_SYSTEMS = 9
-
-
-class Frame(Protocol):
-    """What comes between the offsets and space: scaling, rotation, tilt."""
-
-    def to_space(self, place: Place) -> Place:
-        """Of a point with the offsets added."""
-
-    def to_program(self, place: Place) -> Place:
-        """Its inverse."""
 
 
 class State:
@@ -50,7 +41,7 @@ class State:
 
         self.position = [0.0] * 6
         self.offset = [0.0] * 6  # work system + G52 + G92
-        self.frame: Frame | None = None
+        self.frame: Frame | None = None  # scaling and rotation
         self.stages: dict[str, Stage] = {}  # by slot of the path
         self.way: Onward = RECORDER  # where moves go
         self.compensating = False  # G41, G42: the cutter's radius

@@ -11,6 +11,7 @@ from functools import partial
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.geometry.arcs import PLANE_AXES
 from aircut.interpreter import rotary
 from aircut.interpreter.state import WORK_SYSTEMS, State
 from aircut.interpreter.table import Group, SystemVariable
@@ -72,6 +73,27 @@ def tool_data(*names: str) -> Read:
 
 def feed(m: State, i: int) -> float:
     return m.feed if m.inverse_time else m.feed / m.unit
+
+
+def scaling(part: str, neutral: float) -> Read:
+    """Factors or center of G51."""
+    return lambda m, i: getattr(m.frame.scaling, part)[i] if m.frame and m.frame.scaling else neutral
+
+
+def rotation_plane(m: State, i: int) -> float:
+    """17, 18 or 19; 0 without G68, and under G68.2 (AMB-VAR-12)."""
+    rotation = m.frame.rotation if m.frame else None
+    return 0.0 if rotation is None or rotation.plane is None else 17.0 + rotation.plane
+
+
+def rotation_angle(m: State, i: int) -> float:
+    """Angle of G68, where it turns the XY, XZ or YZ plane."""
+    rotation = m.frame.rotation if m.frame else None
+    return rotation.angles[PLANE_AXES[i][2]] if rotation and rotation.plane == i else 0.0
+
+
+def rotation_center(m: State, i: int) -> float:
+    return m.frame.rotation.programmed[i] if m.frame and m.frame.rotation else 0.0
 
 
 def axes(first: int, title: str, read: Callable[[int], Read], write: object = None) -> tuple[SystemVariable, ...]:
@@ -152,6 +174,11 @@ SYSTEM = (
     *axes(5420, "Tool offset in force", lambda axis: element("tool_offset", axis)),
     one(5426, "Tool whose offset is in force", lambda m, i: float(m.compensated_tool.id)),
     one(5427, "Type of that tool", lambda m, i: float(m.compensated_tool.type)),
+    SystemVariable(5501, 5503, "Scaling factors X Y Z (G51)", scaling("factors", 1.0)),
+    SystemVariable(5504, 5506, "Scaling center X Y Z, as programmed", scaling("programmed", 0.0), "length"),
+    one(5510, "Plane that G68 turns: 17, 18, 19; 0 without", rotation_plane),
+    SystemVariable(5511, 5513, "Angle of G68 in the XY, XZ, YZ plane", rotation_angle),
+    SystemVariable(5514, 5516, "Center of G68 or G68.2 X Y Z, as programmed", rotation_center, "length"),
     one(5700, "State of the last probing: 1, -1, -2; null: only compiled", attribute("probe_state")),
     *axes(5701, "Probed position, work system, without tool offset", lambda axis: element("probed", axis)),
     *axes(5711, "Probed position, machine coordinates", lambda axis: element("probed_machine", axis)),
