@@ -32,3 +32,4 @@ if os.environ.get("AIRCUT_PYTHON_KERNELS"):
     lookahead = twin("lookahead", "aircut.kernels.lookahead")
     thin = twin("thin", "aircut.kernels.thin")
     follow = twin("follow", "aircut.kernels.follow")
+    scurve = twin("scurve", "aircut.kernels.scurve")

@@ -602,7 +602,8 @@ def lay(
                 if take > 0.0:
                     most = 1e300
                 else:
-                    most = kink(before, now, cycle, share, ways, bends, limits)
+                    # With limited jerk, velocity and acceleration may jump at one joint: a half each.
+                    most = kink(before, now, cycle, share / 2.0 if smooth else share, ways, bends, limits)
                     linked = most < 1e300 and most > 0.0
             tail = 0.0
             if linked:

@@ -179,7 +179,10 @@ class Plan:
 
     def piece_tops(self) -> Array:
         """Highest speed in each piece of the path, by its parameter, (pieces,)."""
-        return self.profile.top
+        import numpy as np
+
+        k = np.searchsorted(self.profile.way, self.ways[:-1], side="right") - 1
+        return self.profile.top[np.maximum(k, 0)]
 
     def at(self, time: float) -> tuple[float, ...]:
         """Position of X Y Z A B C at a time, mm and degrees."""

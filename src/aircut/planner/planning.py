@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from aircut.canon import Kind, Toolpath
 from aircut.canon.toolpath import AXES
-from aircut.kernels import lookahead
+from aircut.kernels import lookahead, scurve
 from aircut.kernels import pieces as kernel
 from aircut.planner.clock import Clock, Overrides, Regime
 from aircut.planner.limits import Limits, PlanError, of_machine
@@ -76,7 +76,7 @@ def plan_moves(
     smooth = limits.jerk_limited
     laid = lay(path_moves, limits, regimes, at, stops, smooth)
     path = Path(path_moves, laid["length"], laid["move"], laid["shape"], laid["offset"], smooth)
-    profile, until = trapezoidal(laid)
+    profile, until = speeds(laid, smooth)
     return Plan(toolpath, path, profile, until, rows, list(pauses), limits)
 
 
@@ -139,8 +139,8 @@ def lay(
     return {name: column[:got] for name, column in columns.items()}
 
 
-def trapezoidal(laid: dict[str, NDArray[Any]]) -> tuple[Profile, NDArray[np.float64]]:
-    """Speeds with limited acceleration; and when each piece ends, s."""
+def speeds(laid: dict[str, NDArray[Any]], jerk_limited: bool) -> tuple[Profile, NDArray[np.float64]]:
+    """Speeds with limited acceleration, and jerk; and when each piece ends, s."""
     import numpy as np
 
     length, count = laid["length"], len(laid["length"])
@@ -148,8 +148,30 @@ def trapezoidal(laid: dict[str, NDArray[Any]]) -> tuple[Profile, NDArray[np.floa
     if count:
         lookahead.brake(length, laid["speed"], laid["decel"], laid["enter"], joint)
         lookahead.trapezoids(length, laid["speed"], laid["accel"], laid["decel"], joint, top, time)
+    if jerk_limited and count:
+        return jerk_limited_speeds(laid, joint, top)
     until = np.cumsum(time)
     way = np.cumsum(length) - length
     jerk = np.full(count, np.inf)
     profile = Profile(until - time, way, length, joint[:-1], top, joint[1:], laid["accel"], laid["decel"], jerk)
     return profile, until
+
+
+def jerk_limited_speeds(
+    laid: dict[str, NDArray[Any]], joint: NDArray[np.float64], top: NDArray[np.float64]
+) -> tuple[Profile, NDArray[np.float64]]:
+    """As `speeds`, from what limited acceleration allows at the joints and in the pieces."""
+    import numpy as np
+
+    count = len(top)
+    way = np.concatenate([[0.0], np.cumsum(laid["length"])])
+    out, first_of, until = np.empty(7 * count + 2), np.empty(count, np.int64), np.empty(count)
+    bounds = [laid[name] for name in ("speed", "accel", "decel", "jerk", "enter")]
+    got = scurve.spans(
+        way, *bounds, joint, top, np.empty(count + 1, np.int64), np.empty(count + 1), out, first_of, until
+    )
+    first, peak, last, accel, decel, jerk, seconds = (column[:got] for column in out[: 7 * count].reshape(7, count))
+    begins = np.append(first_of[:got], count)
+    start = np.concatenate([[0.0], np.cumsum(seconds)[:-1]])
+    length = way[begins[1:]] - way[begins[:-1]]
+    return Profile(start, way[begins[:-1]], length, first, peak, last, accel, decel, jerk), until
