@@ -57,7 +57,7 @@ CONTOURS = "".join(
     f"G0 X{25 * i} Y0\nG0 Z1\nG1 Z-2 F600\nG1 X{25 * i + 20} F2400\nG1 Y15\nG1 X{25 * i} Y20\nG1 Y0\nG1 Z1\nG0 Z10\n"
     for i in range(4)
 )
-HOLES = "\n".join(f"G0 X{10 * i} Y{7 * (i % 3)}\nG0 Z1\nG1 Z-4\nG4 P0.25\nG0 Z10" for i in range(1, 9))
+HOLES = "\n".join(f"G0 X{10 * i} Y{7 * (i % 3)}\nG0 Z1\nG1 Z-8\nG4 P0.5\nG0 Z10" for i in range(1, 9))
 HELICES = "G0 X10 Z0\nG2 X10 Y0 I-10 Z-5 P5\nG3 X10 Y0 I-10 Z0 P5\nG2 X-10 Y0 I-10 Z-1\nG18 G2 X10 Z-1 I10\nG17"
 RAPIDS = "\n".join(f"G0 X{(37 * i) % 90} Y{(53 * i) % 70} Z{(11 * i) % 30}" for i in range(1, 16))
 
@@ -72,12 +72,13 @@ PROGRAMS = {
     "circles, G61": "G61 F4000\nG2 I20\nG3 I5\nG2 I2\nG3 I40 F6000",
     "helices in two planes, G64 P0.01": f"G64 P0.01 Q0 F2000\n{HELICES}",
     "rapids, G61.1": f"G61.1\n{RAPIDS}",
+    "drilling with dwells, G61.1": f"G61.1 F600\nG0 Z10\n{HOLES}",
     "rapids, G64 P0.2": f"G64 P0.2 Q0\n{RAPIDS}",
     "drilling with dwells, G64 P0.1": f"G64 P0.1 Q0 F600\nG0 Z10\n{HOLES}",
     "contours with retracts, G64 P0.1": f"G64 P0.1 Q0\nG0 Z10\n{CONTOURS}",
     "zigzag, G64 P0.1": f"G64 P0.1 Q0 F3000\n{zigzag(40, 4)}",
     "pocket of squares, G64 P0.05": f"G64 P0.05 Q0 F2400\n{pocket(40, 4)}",
-    "polygon of 90 sides, G61": f"G61 F3000\nG0 X20\n{polygon(90, 20)}",
+    "polygon of 90 sides, G61": f"G61 F600\nG0 X20\n{polygon(90, 20)}",
     "polygon of 24 sides, G64 P0.02": f"G64 P0.02 Q0 F3000\nG0 X20\n{polygon(24, 20)}\n{polygon(24, 20)}",
     "dense: circle of 360 sides, G64 P0.01": f"G64 P0.01 Q0 F3000\nG0 X20\n{polygon(360, 20)}",
     "dense: wave of 0.5 mm, G64 P0.02": f"G64 P0.02 Q0 F2400\nG0 Z2\n{wave(0.5, 150)}",

@@ -46,8 +46,7 @@ def reach(low: cython.double, length: cython.double, accel: cython.double, jerk:
     least: cython.double = low
     most: cython.double = sqrt(low * low + 2.0 * accel * length)
     middle: cython.double
-    i: cython.int
-    for i in range(60):
+    for _ in range(60):
         middle = (least + most) / 2.0
         if ramp_length(low, middle, accel, jerk) <= length:
             least = middle
@@ -72,12 +71,11 @@ def peak(
     """Highest top, at most `most`, of a span; the ramp between first and last fits into its length."""
     least: cython.double = first if first > last else last
     middle: cython.double
-    i: cython.int
     if most <= least:
         return least
     if ramp_length(first, most, accel, jerk) + ramp_length(last, most, decel, jerk) <= length:
         return most
-    for i in range(60):
+    for _ in range(60):
         middle = (least + most) / 2.0
         if ramp_length(first, middle, accel, jerk) + ramp_length(last, middle, decel, jerk) <= length:
             least = middle
@@ -120,7 +118,6 @@ def ramp_at(
     v: cython.double
     begin: cython.double = low
     bend: cython.double = jerk
-    i: cython.int
     if way > one and way <= two:
         gap = way - one
         t = 2.0 * gap / (speed + sqrt(speed * speed + 2.0 * top * gap))
@@ -137,7 +134,7 @@ def ramp_at(
     least = 0.0
     most = ends
     t = ends / 2.0
-    for i in range(80):
+    for _ in range(80):
         gap = begin * t + bend * t * t * t / 6.0 - way
         if gap <= 1e-16 * way and gap >= -1e-16 * way:
             break
@@ -255,12 +252,11 @@ def highest(
     least: cython.double = first if first > last else last
     top: cython.double = peak(first, last, way[there] - way[here], accel, decel, jerk, most)
     middle: cython.double
-    i: cython.int
     if fits(here, there, first, top, last, accel, decel, jerk, way, speed, joint, found):
         return top
     most = top
     top = -1.0
-    for i in range(200):
+    for _ in range(200):
         if most - least <= 0.001 * most and (top >= 0.0 or least > 0.0):
             break
         middle = (least + most) / 2.0

@@ -135,7 +135,7 @@ def lay(
         row = -1 - got
         kind = Kind(int(toolpath.kind[row])).name.lower()
         raise PlanError(f"line {toolpath.line[row]}: a {kind} move at a feed of {toolpath.feed[row]:g} never ends")
-    columns = {**dict(zip(names, out, strict=True)), "move": move, "shape": shape}
+    columns: dict[str, NDArray[Any]] = {**dict(zip(names, out, strict=True)), "move": move, "shape": shape}
     return {name: column[:got] for name, column in columns.items()}
 
 
