@@ -482,6 +482,7 @@ def lay(
     limits: cython.double[::1],
     cycle: cython.double,
     share: cython.double,
+    parts: cython.double,
     smooth: cython.bint,
     stops: cython.longlong[::1],
     regime_at: cython.longlong[::1],
@@ -497,7 +498,7 @@ def lay(
     moves before which the machine stands. regime_at, regimes: from move regime_at[j] on holds regimes[7j:]:
     blend tolerance mm, acceleration and deceleration of feed moves (0 the axes' own), share of the jerk,
     highest rapid mm/s (0 the axes' own), feed and rapid factors. work: (72,) scratch. smooth: blends
-    have no jump of curvature. cycle, share: see `kink`.
+    have no jump of curvature. parts: mm by which a move told in parts may round their corners. cycle, share: see `kink`.
     Written, all 4n long: out, seven columns end to end: length; highest speed all along; acceleration,
     deceleration, jerk along the path; highest speed at the start; offset, where on its move the piece
     starts, of a blend how much of each line it takes. move: index; shape: LINE, ARC, FILLET, CURVE.
@@ -638,6 +639,10 @@ def lay(
         halt = (flags[i] & 1) != 0 or kind[i] == 3
         tolerance = regimes[7 * regime]
         blends = tolerance > 0.0 and not flags[i] & 3
+        if flags[i] & 32 and kind[i] != 3:  # parts of one move: the chords' corners are not the program's
+            if tolerance < parts or not blends:
+                tolerance = parts
+            blends = True
         before = now
         now = 1 - now
 

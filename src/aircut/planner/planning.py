@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
 #: Part of what an axis can do that a jump at a joint may take. The rest is for the motion on both sides.
 SHARE = 0.5
+#: mm by which a move that is told in short parts, as under tool center point control, may round their corners:
+#: as much as its chords may stray (AMB-RTCP-6).
+PARTS = 0.01
 
 
 def plan(
@@ -122,6 +125,7 @@ def lay(
         np.array(bounds),
         limits.cycle,
         SHARE,
+        PARTS,
         smooth,
         stops.astype(np.int64),
         regime_at.astype(np.int64),
