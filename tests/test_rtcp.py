@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 import aircut
 from aircut.canon import TIP, Kind
-from aircut.geometry.kinematics import MODELS, Setup, array_of, forward
+from aircut.export.seen import box, seen
+from aircut.geometry.kinematics import MODELS, Setup, array_of, direction, forward
 from aircut.machine import Machine, Tool
 from aircut.machine.config import File, Options, RotaryTable, TiltingSpindle, axis_of
 from test_kinematics import composed
@@ -181,3 +182,22 @@ def test_rows_take_as_long_as_the_tip() -> None:
     minutes = toolpath.lengths() / np.where(toolpath.feed > 0, toolpath.feed, np.inf)
     for line, wanted in ((3, 50 / 250), (4, 30 / 90), (5, math.pi * 150 / 600)):
         assert minutes[toolpath.line == line].sum() == pytest.approx(wanted, rel=1e-4)
+
+
+def test_pictures_show_the_part_and_the_tool() -> None:
+    """A tilted cut: what is drawn is where the tip goes on the part, and lines of a length along the tool."""
+    program = "G43.4 H1\nG0 X10 Y20 Z30 A40 C-70\nG1 X50 F500\nG3 Y40 J10\nM2\n"
+    toolpath = aircut.loads(program).run(machine(2)).toolpath
+    shown = seen(toolpath, 1000, 20)
+    assert shown.part and len(shown.tools) == 20
+    cut = toolpath.kind[np.maximum(shown.move, 0)] != Kind.TRAVERSE
+    assert shown.points[cut][0][1:] == pytest.approx([20, 30], abs=1e-6)
+    assert shown.points[cut][-1] == pytest.approx([50, 40, 30], abs=1e-6)
+    lean = shown.tools[:, 1] - shown.tools[:, 0]
+    lengths = np.linalg.norm(lean, axis=1)
+    assert lengths == pytest.approx(np.full(20, lengths[0]))
+    assert lean / lengths[:, None] == pytest.approx(np.tile(direction(setup(2), (40.0, 0.0, -70.0)), (20, 1)), abs=1e-6)
+    low, high = box(toolpath, shown, False) or [[0.0], [0.0]]
+    assert low[0] < 10 + 1e-6 and high[0] >= 59.9  # the half turn reaches X60
+    flat = aircut.loads("G0 X1\nG1 X2 F9\nM2\n").run(machine(2)).toolpath
+    assert not seen(flat, 10, 5).part and not len(seen(flat, 10, 5).tools)

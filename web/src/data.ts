@@ -9,7 +9,7 @@ export type Box = [low: [number, number, number], high: [number, number, number]
 interface Spec { name: string; count: number; base: number; quantum: number }
 interface Facts {
   title: string; moves: number; start: Six; extents: [Box | null, Box | null];
-  frames: Frame[]; files: { name: string; bytes: number }[]; columns: Spec[];
+  tools: number[]; frames: Frame[]; files: { name: string; bytes: number }[]; columns: Spec[];
 }
 
 /** A column of numbers: base + quantum · integer. A quantum of 0 means all are the base. */
@@ -26,6 +26,9 @@ export interface Model {
   title: string; moves: number; start: Six; frames: Frame[];
   /** Boxes in mm: of all moves, and of those that are not rapids. */
   all: Box | null; cut: Box | null;
+  /** Lines along the tool, six numbers each: x, y, z of the tip, and of a point towards the holder. Only of
+   *  five-axis machines; then points are as the part sees them. */
+  tools: Float32Array;
   files: File[];
   /** Points: the start, then those of each move in turn. */
   points: number; x: Column; y: Column; z: Column;
@@ -85,7 +88,7 @@ export async function load(): Promise<Model> {
   for (let i = 1; i < x.count; i++) last[move.at(i)] = i;
   return {
     title: facts.title, moves: facts.moves, start: facts.start, frames: facts.frames, all: facts.extents[0],
-    cut: facts.extents[1], files, points: x.count, x, y, z, move, last, a, b, c, feed, line, file, tool, kind,
+    cut: facts.extents[1], tools: Float32Array.from(facts.tools), files, points: x.count, x, y, z, move, last, a, b, c, feed, line, file, tool, kind,
   };
 }
 

@@ -128,6 +128,7 @@ class Viewer {
     }));
     if (!model.moves) this.say("This program makes no moves.");
     element("legend-probe").hidden = !this.path.hasProbes;
+    element("legend-tool").hidden = !this.path.hasTools;
     const files = element<HTMLSelectElement>("files");
     files.replaceChildren(...model.files.map((file, i) => new Option(file.name, String(i))));
     const slider = element<HTMLInputElement>("slider");

@@ -94,7 +94,7 @@ void main() {
   color = vec4(kindOf < 0.5 ? rapid : kindOf > 2.5 ? probe : tint, opacity);
 }`;
 
-export interface Palette { rapid: THREE.Color; feedLow: THREE.Color; feedHigh: THREE.Color; probe: THREE.Color; ground: THREE.Color }
+export interface Palette { rapid: THREE.Color; feedLow: THREE.Color; feedHigh: THREE.Color; probe: THREE.Color; tool: THREE.Color; ground: THREE.Color }
 
 interface Level { tolerance: number; index: Uint16Array; attribute: THREE.BufferAttribute }
 
@@ -123,6 +123,7 @@ export class Path {
   private readonly from = { value: 0 };
   private readonly quadPart: THREE.ShaderMaterial;
   private readonly quadDim: THREE.ShaderMaterial;
+  private readonly tools = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial());
   private cursor = 0;
   /** Segments given to the card in the last frame. */
   drawn = 0;
@@ -138,6 +139,12 @@ export class Path {
       if (i) kinds[i] = kind.at(move.at(i));
     }
     if (count > 1) kinds[0] = kinds[1];
+
+    const lines = model.tools.map((value, i) => value - pivot.getComponent(i % 3));
+    this.tools.geometry.setAttribute("position", new THREE.BufferAttribute(lines, 3));
+    this.tools.frustumCulled = false;
+    this.tools.renderOrder = 2;
+    if (lines.length) this.group.add(this.tools);
 
     const box = model.cut ?? model.all;
     this.shared = {
@@ -214,6 +221,7 @@ export class Path {
   }
 
   recolor(palette: Palette): void {
+    this.tools.material.color.copy(palette.tool);
     for (const name of ["rapid", "feedLow", "feedHigh", "probe"] as const) {
       (this.bright[name].value as THREE.Color).copy(palette[name]);
       (this.dim[name].value as THREE.Color).copy(palette[name]).lerp(palette.ground, 0.5);
@@ -306,6 +314,8 @@ export class Path {
     }
     return best;
   }
+
+  get hasTools(): boolean { return this.model.tools.length > 0; }
 
   get hasProbes(): boolean { return this.kinds.includes(PROBE); }
 }

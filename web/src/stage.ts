@@ -81,7 +81,7 @@ export class Stage {
     const light = matchMedia("(prefers-color-scheme: light)").matches;
     const color = (value: string) => new THREE.Color(value);
     return {
-      rapid: color(css("--rapid")), probe: color(css("--probe")), ground: color(css("--ground")),
+      rapid: color(css("--rapid")), probe: color(css("--probe")), tool: color(css("--tool")), ground: color(css("--ground")),
       feedLow: color(light ? "#123a9c" : "#3f6df2"), feedHigh: color(light ? "#1492e6" : "#6fe3ff"),
     };
   }

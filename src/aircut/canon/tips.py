@@ -49,7 +49,8 @@ def offsets(toolpath: Toolpath) -> Array:
 
 def with_tools(setup: Setup, tools: Array) -> Setup:
     """The setup with an offset for each of many places, (n, 3)."""
-    return setup._replace(tool_x=tools[:, 0], tool_y=tools[:, 1], tool_z=tools[:, 2])
+    x, y, z = tools.T
+    return Setup(*(setup.model, x, y, z), *setup[4:])
 
 
 def axes(toolpath: Toolpath) -> tuple[Array, Array]:

@@ -17,8 +17,8 @@ from html import escape
 from importlib import resources
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from aircut.canon import Recording, Toolpath
-from aircut.geometry.polylines import polyline
+from aircut.canon import Recording
+from aircut.export.seen import box, finite, seen
 
 if TYPE_CHECKING:
     import numpy as np
@@ -29,8 +29,8 @@ DATA_MARK = "<!--aircut:data-->"
 QUANTUM = 1e-4  # mm, degrees, mm/min: the digits that the page shows
 REACH = 2**30  # quanta that fit a column; a wider path gets a coarser quantum
 LEVEL = 1  # of deflate: higher ones take longer than they spare
+TOOLS = 300  # lines along the tool
 SPARE_POINTS = 2_000_000  # points that arcs may add to a path's moves
-FURTHEST = 1e9  # mm: nothing is drawn farther out
 FRAMES = 10_000  # changes of work offsets that are told; more are a runaway program's
 
 
@@ -87,13 +87,6 @@ def planes(integers: NDArray[np.int32]) -> bytes:
     return zlib.compress(np.ascontiguousarray(apart).tobytes(), LEVEL)
 
 
-def finite(values: Any) -> NDArray[np.float64]:
-    """The values with FURTHEST for what lies beyond it and 0 for what is no number."""
-    import numpy as np
-
-    return np.clip(np.nan_to_num(values, nan=0.0), -FURTHEST, FURTHEST)
-
-
 def column(name: str, values: NDArray[Any], quantum: float = 1.0) -> tuple[dict[str, Any], bytes]:
     """One column for the page: how to read it, and its bytes. Error: half a quantum."""
     import numpy as np
@@ -119,12 +112,6 @@ def text(name: str, source: str) -> tuple[dict[str, Any], bytes]:
     return {"name": name, "bytes": len(data)}, zlib.compress(data, LEVEL)
 
 
-def box(toolpath: Toolpath, rapid: bool | None) -> list[list[float]] | None:
-    """Lowest and highest X, Y, Z of the moves, mm."""
-    extents = toolpath.extents(rapid)
-    return extents and finite([extents.low[:3], extents.high[:3]]).tolist()
-
-
 def script(name: str, data: bytes) -> str:
     """A block of data in the page. Base64 has no character that could end it."""
     return f'<script type="application/octet-stream" id="{name}">{b64encode(data).decode("ascii")}</script>\n'
@@ -142,8 +129,8 @@ def html(recording: Recording, sources: dict[str, str], title: str) -> str:
     sources: text of each file by its name in recording.files; a name without a text is shown without one.
     """
     toolpath = recording.toolpath
-    points, move = polyline(toolpath, max_points=len(toolpath) + SPARE_POINTS)
-    points = finite(points)
+    shown = seen(toolpath, SPARE_POINTS, TOOLS)
+    points, move = shown.points, shown.move
     names = list(recording.files) or list(sources)
     jobs: list[tuple[Callable[..., tuple[dict[str, Any], bytes]], tuple[Any, ...]]] = [
         (text, (name, sources.get(name, ""))) for name in names
@@ -154,13 +141,14 @@ def html(recording: Recording, sources: dict[str, str], title: str) -> str:
     jobs += [(column, (name, toolpath.columns[name])) for name in ("line", "file", "tool", "kind")]
     jobs += [(column, ("move", move))]
     with ThreadPoolExecutor() as pool:
-        boxes = [pool.submit(box, toolpath, rapid) for rapid in (None, False)]
+        boxes = [pool.submit(box, toolpath, shown, rapid) for rapid in (None, False)]
         done = list(pool.map(lambda job: job[0](*job[1]), jobs))
     facts = {
         "title": title,
         "moves": len(toolpath),
         "start": finite(toolpath.start).tolist(),
         "extents": [box.result() for box in boxes],
+        "tools": shown.tools.round(4).reshape(-1).tolist(),
         "frames": frames(recording),
         "files": [told for told, _ in done[: len(names)]],
         "columns": [told for told, _ in done[len(names) :]],

@@ -10,9 +10,9 @@ from __future__ import annotations
 from math import ceil, floor, log10
 from typing import IO, TYPE_CHECKING, Any, Literal, NamedTuple
 
-from aircut.canon import Kind, Recording, Toolpath
-from aircut.export.page import Frame, finite, frames
-from aircut.geometry.polylines import polyline
+from aircut.canon import Kind, Recording
+from aircut.export.page import Frame, frames
+from aircut.export.seen import Seen, box, finite, seen
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 INK, SOFT, GRID = "#1d2530", "#5f6c7b", "#dde3ea"
 FEED, RAPID, PROBE = "#0b62c4", "#d9660a", "#a328c9"
+TOOL = "#16867a"
+TOOLS = 60  # lines along the tool
 AXIS = ("#d32f2f", "#1b8a3e", "#1f5fd6")
 PAPER = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
 LOW, HIGH = (
@@ -62,12 +64,17 @@ SIDE = View("Right (YZ)", (0, 1, 0), (0, 0, 1), (1, 2))
 class Path(NamedTuple):
     """What every view draws."""
 
-    points: NDArray[np.float64]  # (m, 3) mm
+    seen: Seen
     kinds: NDArray[np.uint8]  # of the segment that ends at each point
     low: NDArray[np.float64]  # box of all that is shown, mm
     high: NDArray[np.float64]
     origins: list[tuple[str, NDArray[np.float64]]]
     what: str  # of which moves the box is, as a word before the numbers
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Points of the path, (m, 3) mm."""
+        return self.seen.points
 
 
 def turned(view: View, points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -120,9 +127,8 @@ def gather(recording: Recording) -> Path | None:
     toolpath = recording.toolpath
     if not len(toolpath):
         return None
-    points, move = polyline(toolpath, max_points=len(toolpath) + SPARE)
-    points = finite(points)
-    kinds = toolpath.kind[np.maximum(move, 0)]
+    shown = seen(toolpath, SPARE, TOOLS)
+    kinds = toolpath.kind[np.maximum(shown.move, 0)]
     found = frames(recording)
     zeros: list[tuple[str, NDArray[np.float64]]] = []
     for frame, until in zip(found, [*(each.at for each in found[1:]), len(toolpath)], strict=True):
@@ -135,19 +141,13 @@ def gather(recording: Recording) -> Path | None:
     else:
         zeros = [("0" if not at.any() and len(zeros) == 1 else name, at) for name, at in zeros]
     # The picture is of the cut where rapids reach far beyond it, as from a far machine zero.
-    low, high = box(toolpath, None)
-    if (toolpath.kind != Kind.TRAVERSE).any():
-        least, most = box(toolpath, False)
+    low, high = np.array(box(toolpath, shown, None))
+    cut = box(toolpath, shown, False)
+    if cut is not None:
+        least, most = np.array(cut)
         if 0 < np.linalg.norm(most - least) < np.linalg.norm(high - low) / 2.5:
-            return Path(points, kinds, least, most, zeros, "cut ")
-    return Path(points, kinds, low, high, zeros, "")
-
-
-def box(toolpath: Toolpath, rapid: bool | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Lowest and highest X, Y, Z of the moves, mm: exact, where drawn arcs are a little inside."""
-    extents = toolpath.extents(rapid)
-    assert extents is not None
-    return finite(extents.low[:3]), finite(extents.high[:3])
+            return Path(shown, kinds, least, most, zeros, "cut ")
+    return Path(shown, kinds, low, high, zeros, "")
 
 
 def zero(frame: Frame) -> NDArray[np.float64]:
@@ -205,6 +205,9 @@ def show(axes: Axes, path: Path, view: View, pixels: tuple[float, float]) -> Non
                 rasterized=len(line) > MANY // 4,
                 zorder=3 if name == "feed" else 4,
             )
+    if len(path.seen.tools):
+        lines(axes, view, path.seen.tools.tolist(), color=TOOL, linewidth=0.9, alpha=0.75, zorder=5)
+        axes.plot([], [], color=TOOL, label="tool")
     if view.axes is None:
         surround(axes, path, view, size)
     else:
@@ -407,7 +410,8 @@ def compose(figure: Figure, path: Path | None, title: str, moves: int) -> None:
     box = zip("XYZ", path.low, path.high, strict=True)
     told = [f"{name} {millimeters(low)} … {millimeters(high)}" for name, low, high in box]
     words = "    ".join([f"{moves:,} moves", path.what + told[0], *told[1:]])
-    figure.text(0.02, 0.943, f"{words} mm, machine coordinates", fontsize=10, color=SOFT, va="top")
+    told_as = "as the part sees it" if path.seen.part else "machine coordinates"
+    figure.text(0.02, 0.943, f"{words} mm, {told_as}", fontsize=10, color=SOFT, va="top")
     for view, room in (
         (TOP, (0.06, 0.425, 0.42, 0.45)),
         (OVERVIEW, (0.5, 0.38, 0.495, 0.52)),
@@ -422,7 +426,7 @@ def compose(figure: Figure, path: Path | None, title: str, moves: int) -> None:
         shown,
         names,
         loc="upper right",
-        ncols=3,
+        ncols=4,
         frameon=False,
         fontsize=10,
         labelcolor=INK,

@@ -21,7 +21,6 @@ Source: 000 section 12.2, decisions AMB-RTCP-1, AMB-RTCP-4, AMB-RTCP-7.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
 
 Numbers = Any  # a float, or an array of them
 Point = tuple[Numbers, Numbers, Numbers]
-Three = Sequence[Numbers]
+Three = Any  # three of them: a sequence, or the rows of an array
 
 X, Y, Z = range(3)
 HALF_TURN = 180.0
