@@ -25,10 +25,12 @@ from aircut.diagnostics import Severity
 from aircut.language.arithmetic import FUNCTIONS, OPERATORS
 from aircut.machine import Machine, MachineError, built_in, load, memory, ngx
 from aircut.machine.imports import read_tools
+from aircut.rules import RulesError
+from aircut.rules.policy import read as read_project
 
 ROOT = Path(__file__).parent.parent
 LIMITS = Limits(blocks=1500, moves=50_000)
-PATIENCE = 20  # seconds after which an input counts as one that hangs
+PATIENCE = 20  # seconds of work after which an input counts as one that hangs
 FOLDER = Path(tempfile.mkdtemp(prefix="aircut-inputs-"))
 
 
@@ -387,6 +389,7 @@ FILES: tuple[tuple[str, Callable[[Choices], str], Callable[[Path], Any], type[Ex
     ("library.json", picked(JSON, ""), read_tools, MachineError),
     ("machine.toml", toml, lambda path: load(path.parent), MachineError),
     ("world.toml", toml, load_world, WorldError),
+    ("aircut.toml", toml, read_project, RulesError),
     (
         "linuxcnc.var",
         picked(PARAMETERS, "\n"),
@@ -449,10 +452,10 @@ def one(data: bytes) -> None:
     """Run one input; raises only where aircut is at fault."""
     choices = Choices(data)
     target = choices.pick(TARGETS)
-    before = signal.signal(signal.SIGALRM, hang)
-    signal.alarm(PATIENCE)
+    before = signal.signal(signal.SIGPROF, hang)
+    signal.setitimer(signal.ITIMER_PROF, PATIENCE)
     try:
         target(choices)
     finally:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, before)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)

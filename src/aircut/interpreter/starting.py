@@ -41,8 +41,7 @@ def load(m: State) -> None:
     known = m.machine.variables
     for row in m.dialect.ranges:
         if row.initial == "table":
-            for number in range(row.first, row.last + 1):
-                m.numbered[number] = known.get(number)
+            m.numbered[row.first : row.last + 1] = map(known.get, range(row.first, row.last + 1))
     for i in range(6):
         m.home[i] = known.get(5161 + i, 0.0)
         m.second_home[i] = known.get(5181 + i, 0.0)
