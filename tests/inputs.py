@@ -239,7 +239,7 @@ def fit(text: str | bytes, dialect: str, made: Machine, world: World | None = No
             assert diagnostic.span.line <= max(len(program.source), 1), "line of a diagnostic"
             width = len(program.source.text(diagnostic.span.line - 1))
             assert 1 <= diagnostic.span.column <= width + 1, f"column of {diagnostic!r}"
-            assert diagnostic.span.column < diagnostic.span.end <= width + 2, f"end of {diagnostic!r}"
+            assert diagnostic.span.column < diagnostic.span.end <= width + 2 or width == 0, f"end of {diagnostic!r}"
 
 
 def dialect_of(choices: Choices) -> str:

@@ -160,9 +160,7 @@ def show(diagnostics: Sequence[Diagnostic], source_line: Callable[[str, int], st
         if terminal:
             severity = click.style(severity, fg=COLORS[d.severity], bold=True)
         print(f"{place}: {severity} {d.code}: {d.message}", file=file)
-        if not terminal:
-            continue
-        if d.span.line:
+        if terminal and d.span.line:
             text = source_line(d.file, d.span.line)
             start = max(d.span.column - 1, 0)
             width = max(min(d.span.end - 1, len(text)) - start, 1)

@@ -52,7 +52,7 @@ NOT_SUPPORTED_YET = Fault(
     "the language has this code, but this version of aircut cannot run it: what follows may be wrong",
 )
 UNSUPPORTED_CODE = Fault("unsupported-code", "the controller does not support {code}")
-MODAL_CONFLICT = Fault("modal-conflict", "{first} and {second} are of one modal group", "use two blocks")
+MODAL_CONFLICT = Fault("modal-conflict", "{first} and {second} are of one modal group: {group}", "use two blocks")
 SOLE_CODE = Fault("sole-code", "{code} must be the only G or M code of its block", "{other} needs a block of its own")
 AXIS_CONFLICT = Fault("axis-conflict", "{first} and {second} both want the axis words", "use two blocks")
 AMBIGUOUS_WORD = Fault("ambiguous-word", "{word} could belong to {first} or to {second}", "use two blocks")

@@ -13,8 +13,18 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.table import AXES, POLAR_WORDS, Code, Dialect, Group
 
+#: What words mean, by letter; and for some codes by code and letter.
 MEANINGS = {
-    "p": "P is a number: of a subroutine, a system, seconds or turns, as the code has it",
+    **dict.fromkeys(("M98 p", "G65 p", "G66 p", "CALL p"), "P is the subroutine: its number, or its name in quotes"),
+    "G4 p": "P is how long to wait, in seconds",
+    **dict.fromkeys(
+        ("G10 L2 p", "G10 L20 p"), "P is the work system: 1 for G54 to 9 for G59.3, 0 for the one in force"
+    ),
+    **dict.fromkeys(("G10 L1 p", "G10 L10 p", "G10 L11 p"), "P is the tool's number"),
+    **dict.fromkeys(("M62 p", "M63 p", "M68 p"), "P is the output's number"),
+    **dict.fromkeys(("M66 p", "M67 p"), "P is the input's number"),
+    "G10 l": "L is what to set: 2 and 20 a work system, 1 and 10 a tool, 100 other values",
+    "p": "P is the code's number: which one, how long or how often",
     "q": "Q is the code's own parameter",
     "l": "L is how many times, or what kind",
 }
@@ -111,8 +121,9 @@ def exclusive(rows: Sequence[Code]) -> None:
     """Refuse two codes of one modal group."""
     for i, row in enumerate(rows):
         for other in rows[:i]:
-            if row.group & other.group and not (row.weak != other.weak):
-                raise Refusal(F.MODAL_CONFLICT, row.name[0].lower(), first=other.name, second=row.name)
+            if row.group & other.group and row.weak == other.weak:
+                group = (row.group & other.group).title
+                raise Refusal(F.MODAL_CONFLICT, row.name[0].lower(), first=other.name, second=row.name, group=group)
 
 
 def rival(row: Code, rows: Sequence[Code]) -> bool:
@@ -150,9 +161,13 @@ def used(rows: Sequence[Code], letters: Sequence[str], dialect: Dialect) -> None
             raise Refusal(F.AMBIGUOUS_WORD, letter, word=letter.upper(), first=first, second=second)
 
 
+def meaning(code: str, letter: str) -> str:
+    """What a word of a code means; empty where the house does not say."""
+    return MEANINGS.get(f"{code} {letter}") or MEANINGS.get(letter, "")
+
+
 def missing(rows: Sequence[Code], present: set[str]) -> None:
     for row in rows:
         for letter in row.needs:
             if letter not in present:
-                meaning = MEANINGS.get(letter, "")
-                raise Refusal(F.MISSING_WORD, code=row.name, word=letter.upper(), meaning=meaning)
+                raise Refusal(F.MISSING_WORD, code=row.name, word=letter.upper(), meaning=meaning(row.name, letter))

@@ -93,7 +93,19 @@ class Interpreter(Run):
     def tell_refusal(self, refusal: Refusal, unit: Unit, line: int, stack: bool = True) -> None:
         frames = self.stack_frames() if stack else ()
         span = unit.place(line, refusal) if line < len(unit.source) else Span()
-        self.tell(refusal.fault.at(unit.source.name, span, frames, **refusal.values))
+        told = refusal.fault.at(unit.source.name, span, frames, **refusal.values)
+        if refusal.fault is F.NULL_VALUE and self.stack and (missing := self.missing_argument(refusal.values["what"])):
+            told = told._replace(hint=missing)
+        self.tell(told)
+
+    def missing_argument(self, what: str) -> str:
+        """A hint where a null variable is an argument that the call has not given; empty where it is none."""
+        level = self.stack[-1]
+        letter = next((letter for letter, number in ARGUMENTS.items() if what == f"#{number}"), "")
+        if letter == "" or level.call.arguments is None or letter in level.call.arguments:
+            return ""
+        place = f"line {level.line} of {level.unit.source.name}"
+        return f"{what} is the argument {letter.upper()}, which the call in {place} does not give"
 
     # --- the run
 
@@ -446,6 +458,8 @@ class Interpreter(Run):
         m = self.state
         codes, letters = statement.codes, statement.letters
         if statement.moving:
+            if any(letter in "gm" and is_null(value) for letter, value in zip(letters, values, strict=True)):
+                self.explain(unit, line, TypeError("null word"))
             codes, letters, values = self.computed_codes(codes, letters, values)
             steps = self.arranged(codes, letters, {})
         else:
@@ -652,7 +666,8 @@ class Interpreter(Run):
         written = f"O{call.name}" if call.numbered else call.name
         unit = self.external(written)
         if unit is None:
-            hint = "subroutines stand in the file, or as files in the macros folders (--macros)"
+            folders = (*self.machine.macros, INSTALLED)
+            hint = macros.searched(written, folders, () if call.file else self.unit.structure.routines)
             raise Refusal(F.NO_SUBROUTINE, "p", name=written, hint=hint)
         entry = unit.entry()
         stem = macros.stem(call.name).lower()

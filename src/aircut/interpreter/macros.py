@@ -39,6 +39,18 @@ def find(name: str, folders: Iterable[Path]) -> Path | None:
     return found
 
 
+def searched(name: str, folders: Iterable[Path], routines: Iterable[str]) -> str:
+    """Where a called name has been looked for, in words."""
+    wanted = name if has_extension(name) else name + EXTENSION
+    files = wanted
+    if wanted.lower().endswith(EXTENSION):
+        files += f" and {wanted[: -len(EXTENSION)]}{ENCRYPTED}"
+    known = ", ".join(routines)
+    inside = f"the file, which has {known}; " if known else ""
+    places = ", ".join(map(str, folders))
+    return f"searched: {inside}{files} in {places} (--macros adds a folder)"
+
+
 def exact(wanted: str, folders: Iterable[Path]) -> Path | None:
     """The file of this name in the first folder that has it; one that differs in case will do."""
     if len(wanted.encode()) > LONGEST:

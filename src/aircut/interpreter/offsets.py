@@ -11,6 +11,7 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.modes import comment
 from aircut.interpreter.motion import NUMBERED_AXES
+from aircut.interpreter.arranging import meaning
 from aircut.interpreter.state import WORK_SYSTEMS, State, out_of_range, whole
 from aircut.interpreter.table import Code, Group, Order, Words
 
@@ -89,7 +90,7 @@ def set_data(m: State, w: Words) -> None:
             raise Refusal(F.UNUSED_WORD, letter, word=letter.upper())
     for letter in row.needs:
         if letter not in w:
-            raise Refusal(F.MISSING_WORD, code=row.name, word=letter.upper(), meaning="")
+            raise Refusal(F.MISSING_WORD, code=row.name, word=letter.upper(), meaning=meaning(row.name, letter))
     row.run(m, w)
 
 

@@ -57,6 +57,11 @@ class Group(IntFlag):
     DIAMETER = auto()
     USER = auto()
 
+    @property
+    def title(self) -> str:
+        """In words."""
+        return (self.name or "").lower().replace("_", " ").replace("|", " and ")
+
 
 class Order(IntEnum):
     """Places in the order of execution of a block. Source: 000 section 1.7, decision AMB-EXE-1."""

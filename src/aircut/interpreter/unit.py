@@ -124,7 +124,8 @@ class Unit:
                     if isinstance(body, Mark):
                         yield line, body
             except Refusal:
-                pass
+                if MARK_START.match(self.source.raw(line)[:80].lower().translate(None, b" \t").decode("latin-1")):
+                    yield line, Mark("broken", "", None, (0, 0))
             line = classes.find(scan.OTHER, line + 1, end)
 
     def entry(self) -> Routine:

@@ -224,7 +224,12 @@ class LineParser(Parser):
             return Refusal(F.MISPLACED_SLASH, where=where)
         if character == "%":
             return Refusal(F.MISPLACED_PERCENT, where=where)
-        hint = "a subroutine is declared at the start of a line" if character == "o" else ""
+        hint = ""
+        if character == "o":
+            digit = self.at > 0 and self.code[self.at - 1] in "0123456789."
+            hint = "is the digit 0 meant?" if digit else "a subroutine is declared at the start of a line"
+        elif character == ",":
+            hint = "decimals are written with a point, as in 1.5"
         return illegal_character(character, where, hint)
 
     def word(self) -> Word:

@@ -132,7 +132,13 @@ class Parser:
             return Refusal(F.MISPLACED_COMMENT, where=here)
         if not " " <= self.code[self.at : self.at + 1] <= "~" and self.at < len(self.code):
             return illegal_character(self.code[self.at], here)
+        if not hint and self.code[self.at : self.at + 1] == "o":
+            hint = "is the digit 0 meant?"
         return Refusal(F.EXPECTED, where=here, wanted=wanted, found=self.found(), hint=hint)
+
+    def compared(self) -> str:
+        """A hint where a comparison is written as in other languages."""
+        return "comparisons are EQ, NE, GT, GE, LT and LE" if self.code[self.at : self.at + 1] in "=<>!" else ""
 
     def take(self, text: str) -> bool:
         """Pass over this text if it stands here."""
@@ -222,7 +228,7 @@ class Parser:
         if not self.take("]"):
             if self.at >= len(self.code):
                 raise Refusal(F.UNCLOSED_BRACKET, where=(start, start + 1))
-            raise self.expected("an operator or ]")
+            raise self.expected("an operator or ]", self.compared())
         self.depth -= 1
         return node
 

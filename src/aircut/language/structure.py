@@ -140,21 +140,28 @@ class Matcher:
     def __init__(self, structure: Structure) -> None:
         self.structure = structure
         self.open: list[Open] = []
+        self.broken = False
 
     def match(self, marks: list[tuple[int, Mark]]) -> None:
         for line, mark in marks:
             try:
                 self.STEPS[mark.kind](self, line, mark)
             except Refusal as refusal:
+                if self.broken and refusal.fault is F.UNMATCHED_END:
+                    continue
                 refusal.where = mark.where
                 self.structure.faults.append((line, refusal))
         self.close_all()
+
+    def damaged(self, _line: int, _mark: Mark) -> None:
+        """A line that cannot be read may have opened or closed a block: what does not fit then is its fault."""
+        self.broken = True
 
     def sub(self, _line: int, _mark: Mark) -> None:
         self.close_all()
 
     def close_all(self) -> None:
-        for block in self.open:
+        for block in () if self.broken else self.open:
             what = f"{OPENERS[block.kind]} … {block.id}"
             fault = Refusal(F.UNCLOSED_BLOCK, what=what, closer=f"END{block.id}")
             self.structure.faults.append((block.marks[0][0], fault))
@@ -204,4 +211,4 @@ class Matcher:
         for at, _ in block.marks[1:]:
             self.structure.onward[at] = line + 1
 
-    STEPS = {"if": opening, "while": opening, "elif": branch, "else": branch, "end": end, "sub": sub}
+    STEPS = {"if": opening, "while": opening, "elif": branch, "else": branch, "end": end, "sub": sub, "broken": damaged}

@@ -35,7 +35,6 @@ CALLS = tuple(
          rb"g[ \t]*[2-4]\d\d(?!\d)", rb"m[ \t]*2\d\d"),
     )
 )  # fmt: skip
-TOLD = ("null-value", "undefined-name")
 COMPUTED = ""  # the name of all variables that are set by a computed number
 
 
@@ -54,7 +53,7 @@ def unset(page: Page) -> Iterator[Diagnostic]:
     run, unit = page.run, page.unit
     found = {routine: uses(page.low, *bounds(unit, routine)) for routine in page.structure.order}
     others = [uses(small(other), 0, len(other.source.data)) for other in run.units.values() if other is not unit]
-    told = {(d.file, d.span.line) for d in run.diagnostics if d.code in TOLD and d.severity is Severity.ERROR}
+    told = {(d.file, d.span.line) for d in run.diagnostics if d.severity is Severity.ERROR}
     ways = back_ways(page)
     calls = page.lines(*CALLS)
     unknown = [line for line in calls if not looked_at(page, line)]

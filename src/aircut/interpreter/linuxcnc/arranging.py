@@ -99,8 +99,9 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
     rows = [find(name, dialect) for name in names]
     for i, row in enumerate(rows):
         for other in rows[:i]:
-            if row.group & other.group and not (row.weak != other.weak):
-                raise Refusal(F.MODAL_CONFLICT, row.name[0].lower(), first=other.name, second=row.name)
+            if row.group & other.group and row.weak == other.weak:
+                group = (row.group & other.group).title
+                raise Refusal(F.MODAL_CONFLICT, row.name[0].lower(), first=other.name, second=row.name, group=group)
     alone = next((row for row in rows if row.sole), None)
     if alone is not None and (len(rows) > 1 or not set(letters) <= set(alone.takes)):
         raise Refusal(F.SOLE_CODE, "m", code=alone.name, other="anything else")
