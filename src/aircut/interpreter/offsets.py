@@ -9,9 +9,9 @@ from functools import partial
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.interpreter.arranging import meaning
 from aircut.interpreter.modes import comment
 from aircut.interpreter.motion import NUMBERED_AXES
-from aircut.interpreter.arranging import meaning
 from aircut.interpreter.state import WORK_SYSTEMS, State, out_of_range, whole
 from aircut.interpreter.table import Code, Group, Order, Words
 
