@@ -498,7 +498,8 @@ def lay(
     moves before which the machine stands. regime_at, regimes: from move regime_at[j] on holds regimes[7j:]:
     blend tolerance mm, acceleration and deceleration of feed moves (0 the axes' own), share of the jerk,
     highest rapid mm/s (0 the axes' own), feed and rapid factors. work: (72,) scratch. smooth: blends
-    have no jump of curvature. parts: mm by which a move told in parts may round their corners. cycle, share: see `kink`.
+    have no jump of curvature. parts: mm by which a move told in parts may round their corners. cycle and
+    share: see `kink`.
     Written, all 4n long: out, seven columns end to end: length; highest speed all along; acceleration,
     deceleration, jerk along the path; highest speed at the start; offset, where on its move the piece
     starts, of a blend how much of each line it takes. move: index; shape: LINE, ARC, FILLET, CURVE.
