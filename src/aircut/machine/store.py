@@ -9,7 +9,6 @@ Sources: decisions AMB-VAR-2, AMB-VAR-3, AMB-VAR-20; 000 section 2 (protected va
 
 from __future__ import annotations
 
-import hashlib
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager
@@ -223,6 +222,8 @@ def numbers(stored: Stored) -> Iterator[tuple[int, float]]:
 
 def digest(stored: Stored) -> str:
     """A checksum of all that is stored."""
+    import hashlib
+
     text = repr((
         [(number, value.hex()) for number, value in numbers(stored)],
         [msgspec.json.encode(tool) for _, tool in sorted(stored.tools.items())],

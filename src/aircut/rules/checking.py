@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from aircut.diagnostics import Diagnostic
 from aircut.diagnostics import faults as F
 from aircut.interpreter.interpreter import Interpreter
 from aircut.interpreter.running import Run
@@ -11,10 +12,6 @@ from aircut.rules.flow import unreachable, unused
 from aircut.rules.motion import Watch
 from aircut.rules.page import Page
 from aircut.rules.policy import Policy
-from aircut.rules.variables import unset
-
-#: Rules that read the text when it has run: they know the structure of the RosettaCNC language.
-READING = (unset, unreachable, unused)
 
 
 def checked(run: Run, policy: Policy) -> Iterator[None]:
@@ -30,10 +27,19 @@ def checked(run: Run, policy: Policy) -> Iterator[None]:
         for diagnostic in watch.found:
             run.tell(diagnostic)
     if page is not None:
-        for rule in READING:
-            for diagnostic in rule(page):
-                run.tell(diagnostic)
+        for diagnostic in read(page):
+            run.tell(diagnostic)
     settled(run, policy)
+
+
+def read(page: Page) -> Iterator[Diagnostic]:
+    """The rules that read the text when it has run: they know the structure of the RosettaCNC language."""
+    if b"#" in page.low:
+        from aircut.rules.variables import unset
+
+        yield from unset(page)
+    yield from unreachable(page)
+    yield from unused(page)
 
 
 def settled(run: Run, policy: Policy) -> None:

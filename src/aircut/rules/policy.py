@@ -15,7 +15,6 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
@@ -113,6 +112,8 @@ def unknown(code: str) -> str:
     """Why a code cannot be switched off; empty where it can."""
     fault = FAULTS.get(code)
     if fault is None:
+        from difflib import get_close_matches
+
         rules = [fault.code for fault in FAULTS.values() if fault.severity is Severity.WARNING]
         near = get_close_matches(code, rules, 1)
         return f"there is no rule {code}" + (f"; {near[0]} is meant?" if near else "")

@@ -48,8 +48,6 @@ class Uses:
 
 def unset(page: Page) -> Iterator[Diagnostic]:
     """The first reading of each variable, in each routine, that cannot have been set by then."""
-    if b"#" not in page.low:
-        return
     run, unit = page.run, page.unit
     found = {routine: uses(page.low, *bounds(unit, routine)) for routine in page.structure.order}
     others = [uses(small(other), 0, len(other.source.data)) for other in run.units.values() if other is not unit]
