@@ -38,6 +38,8 @@ export interface Model {
   last: Uint32Array;
   /** By move. */
   a: Column; b: Column; c: Column; feed: Column; line: Column; file: Column; tool: Column; kind: Column;
+  /** What compensation led the tool beside: points, and which of them end a segment to be drawn. */
+  contour: { x: Column; y: Column; z: Column; drawn: Column };
 }
 
 export const TRAVERSE = 0, PROBE = 3;
@@ -89,6 +91,7 @@ export async function load(): Promise<Model> {
   return {
     title: facts.title, moves: facts.moves, start: facts.start, frames: facts.frames, all: facts.extents[0],
     cut: facts.extents[1], tools: Float32Array.from(facts.tools), files, points: x.count, x, y, z, move, last, a, b, c, feed, line, file, tool, kind,
+    contour: { x: named["contour-x"], y: named["contour-y"], z: named["contour-z"], drawn: named["contour-drawn"] },
   };
 }
 

@@ -36,6 +36,18 @@ function clock(model: Model): { seconds: Float64Array; cut: number; rapid: numbe
   return { seconds, cut, rapid };
 }
 
+/** The programmed contour, where the path runs beside it. Its color stays linked to the one given. */
+function contourOf(model: Model, pivot: THREE.Vector3, color: THREE.Color): THREE.LineSegments {
+  const { x, y, z, drawn } = model.contour;
+  const ends: number[] = [];
+  for (let i = 1; i < x.count; i++) if (drawn.at(i)) for (const at of [i - 1, i]) ends.push(x.at(at) - pivot.x, y.at(at) - pivot.y, z.at(at) - pivot.z);
+  const material = new THREE.LineBasicMaterial();
+  material.color = color;
+  const lines = new THREE.LineSegments(new THREE.BufferGeometry().setAttribute("position", new THREE.Float32BufferAttribute(ends, 3)), material);
+  lines.frustumCulled = false;
+  return lines;
+}
+
 class Viewer {
   readonly stage: Stage;
   readonly path: Path;
@@ -45,6 +57,7 @@ class Viewer {
   private readonly lineStarts: (Uint32Array | undefined)[] = [];
   private readonly firstMoves: Int32Array[];
   private readonly partial = new THREE.Line(new THREE.BufferGeometry().setAttribute("position", new THREE.BufferAttribute(new Float32Array(6), 3)), new THREE.LineBasicMaterial());
+  private readonly contourColor = new THREE.Color();
   private shownFile = -1;
   private direction: [number, number, number] | undefined = VIEWS.iso;
   private gridShown = true;
@@ -67,7 +80,7 @@ class Viewer {
     const canvas = element<HTMLCanvasElement>("canvas");
     this.stage = new Stage(model, canvas, element("labels"));
     this.path = new Path(model, this.stage.pivot, this.stage.diagonal);
-    this.stage.scene.add(this.path.group, this.partial);
+    this.stage.scene.add(this.path.group, this.partial, contourOf(model, this.stage.pivot, this.contourColor));
     this.partial.renderOrder = 3;
     this.partial.frustumCulled = false;
     this.rough = model.points > 300_000 ? 3 : model.points > 60_000 ? 2 : 0;
@@ -129,6 +142,7 @@ class Viewer {
     if (!model.moves) this.say("This program makes no moves.");
     element("legend-probe").hidden = !this.path.hasProbes;
     element("legend-tool").hidden = !this.path.hasTools;
+    element("legend-contour").hidden = !model.contour.x.count;
     const files = element<HTMLSelectElement>("files");
     files.replaceChildren(...model.files.map((file, i) => new Option(file.name, String(i))));
     const slider = element<HTMLInputElement>("slider");
@@ -217,6 +231,7 @@ class Viewer {
 
   private recolor(): void {
     this.path.recolor(this.stage.palette());
+    this.contourColor.set(getComputedStyle(document.documentElement).getPropertyValue("--contour").trim());
     this.dress();
   }
 

@@ -18,7 +18,7 @@ from importlib import resources
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aircut.canon import Recording
-from aircut.export.seen import box, finite, seen
+from aircut.export.seen import box, finite, programmed, seen
 
 if TYPE_CHECKING:
     import numpy as np
@@ -128,6 +128,8 @@ def html(recording: Recording, sources: dict[str, str], title: str) -> str:
 
     sources: text of each file by its name in recording.files; a name without a text is shown without one.
     """
+    import numpy as np
+
     toolpath = recording.toolpath
     shown = seen(toolpath, SPARE_POINTS, TOOLS)
     points, move = shown.points, shown.move
@@ -140,6 +142,9 @@ def html(recording: Recording, sources: dict[str, str], title: str) -> str:
     jobs += [(column, ("feed", finite(toolpath.feed), QUANTUM))]
     jobs += [(column, (name, toolpath.columns[name])) for name in ("line", "file", "tool", "kind")]
     jobs += [(column, ("move", move))]
+    contour, drawn = programmed(recording, SPARE_POINTS)
+    jobs += [(column, (f"contour-{axis}", contour[:, index], QUANTUM)) for index, axis in enumerate("xyz")]
+    jobs += [(column, ("contour-drawn", drawn.astype(np.int32)))]
     with ThreadPoolExecutor() as pool:
         boxes = [pool.submit(box, toolpath, shown, rapid) for rapid in (None, False)]
         done = list(pool.map(lambda job: job[0](*job[1]), jobs))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from aircut.canon import Kind, Toolpath
+from aircut.canon import Kind, Recording, Toolpath
 from aircut.canon.tips import kinematics, on_part
 from aircut.geometry.polylines import polyline
 
@@ -91,3 +91,17 @@ def box(toolpath: Toolpath, shown: Seen, rapid: bool | None) -> list[list[float]
     places = shown.points[np.concatenate([ends, np.maximum(ends - 1, 0)])]
     places = np.vstack([places, shown.tools.reshape(-1, 3)])
     return [places.min(axis=0).tolist(), places.max(axis=0).tolist()]
+
+
+def programmed(recording: Recording, spare: int) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """The contours beside which compensation led the tool: points (m, 3), and which end a segment to be drawn.
+
+    spare: points that arcs may add.
+    """
+    import numpy as np
+
+    contour = recording.contour
+    if not len(contour):
+        return np.empty((0, 3)), np.empty(0, bool)
+    points, move = polyline(contour, max_points=len(contour) + spare)
+    return finite(points), (move >= 0) & (contour.kind[np.maximum(move, 0)] != Kind.TRAVERSE)

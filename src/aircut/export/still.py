@@ -12,7 +12,7 @@ from typing import IO, TYPE_CHECKING, Any, Literal, NamedTuple
 
 from aircut.canon import Kind, Recording
 from aircut.export.page import Frame, frames
-from aircut.export.seen import Seen, box, finite, seen
+from aircut.export.seen import Seen, box, finite, programmed, seen
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 INK, SOFT, GRID = "#1d2530", "#5f6c7b", "#dde3ea"
-FEED, RAPID, PROBE = "#0b62c4", "#d9660a", "#a328c9"
+FEED, RAPID, PROBE, CONTOUR = "#0b62c4", "#d9660a", "#a328c9", "#a08a00"
 TOOL = "#16867a"
 TOOLS = 60  # lines along the tool
 AXIS = ("#d32f2f", "#1b8a3e", "#1f5fd6")
@@ -70,6 +70,7 @@ class Path(NamedTuple):
     high: NDArray[np.float64]
     origins: list[tuple[str, NDArray[np.float64]]]
     what: str  # of which moves the box is, as a word before the numbers
+    contour: NDArray[np.float64]  # (k, 3) mm, what compensation led the tool beside; NaN between stretches
 
     @property
     def points(self) -> NDArray[np.float64]:
@@ -140,14 +141,16 @@ def gather(recording: Recording) -> Path | None:
         zeros.append(("machine zero", np.zeros(3)))
     else:
         zeros = [("0" if not at.any() and len(zeros) == 1 else name, at) for name, at in zeros]
+    beside, drawn = programmed(recording, SPARE)
+    beside = np.insert(beside, np.flatnonzero(~drawn), np.nan, axis=0)
     # The picture is of the cut where rapids reach far beyond it, as from a far machine zero.
     low, high = np.array(box(toolpath, shown, None))
     cut = box(toolpath, shown, False)
     if cut is not None:
         least, most = np.array(cut)
         if 0 < np.linalg.norm(most - least) < np.linalg.norm(high - low) / 2.5:
-            return Path(shown, kinds, least, most, zeros, "cut ")
-    return Path(shown, kinds, low, high, zeros, "")
+            return Path(shown, kinds, least, most, zeros, "cut ", beside)
+    return Path(shown, kinds, low, high, zeros, "", beside)
 
 
 def zero(frame: Frame) -> NDArray[np.float64]:
@@ -173,7 +176,8 @@ def show(axes: Axes, path: Path, view: View, pixels: tuple[float, float]) -> Non
     corners = np.array(np.meshgrid(*zip(path.low, path.high, strict=True))).reshape(3, -1).T
     size = float(np.linalg.norm(path.high - path.low)) or 1.0
     near = [at for _, at in path.origins if box_distance(path, at) < 0.5 * size]
-    seen = turned(view, np.vstack([corners, *near]))
+    shown = path.contour[np.isfinite(path.contour[:, 0])]
+    seen = turned(view, np.vstack([corners, *near, shown]))
     low, high = seen.min(axis=0), seen.max(axis=0)
     scale = max(float(((high - low) / pixels).max()), size * 1e-6 / 100)  # mm a pixel
     axes.set_aspect("equal")
@@ -182,6 +186,9 @@ def show(axes: Axes, path: Path, view: View, pixels: tuple[float, float]) -> Non
     axes.set_ylim(middle[1] - room[1], middle[1] + room[1])
     axes.set_title(view.title, fontsize=11, color=SOFT, loc="left")
 
+    if len(shown):
+        contour = turned(view, path.contour)
+        axes.plot(contour[:, 0], contour[:, 1], color=CONTOUR, linewidth=1.1, label="programmed", zorder=2.5)
     pixel = scale * 1.2  # the margins' share included
     feeds = (path.kinds == Kind.FEED) | (path.kinds == Kind.ARC)
     feeds[0] = False

@@ -72,6 +72,7 @@ class Compensation:
         self.contour = m.to_space(m.position)  # as programmed, up to here
         self.tool = self.flat(self.contour)  # in the plane, up to what has been written
         self.entered = False
+        self.traced = False  # the contour as programmed has been begun
         self.held: Held | None = None
         self.behind: list[Move] = []  # moves out of the plane that wait behind the one held
 
@@ -242,11 +243,13 @@ class Compensation:
         """Note the contour as programmed, for pictures."""
         element = move.element
         kind = move.kind if element is None or element.center is None else ARC
-        center = element.center if element is not None and element.center is not None else (0.0, 0.0)
+        center = (element and element.center) or (0.0, 0.0)
         turns = element.turns if element is not None else 0
-        m.out.contour += ROW.pack(
-            *move.end, *center, move.speed, move.line, move.tool, turns, move.file, kind, m.plane, move.flags
-        )
+        told = (move.line, move.tool)
+        if not self.traced:
+            self.traced = True
+            m.out.contour += ROW.pack(*self.contour, 0.0, 0.0, 0.0, *told, 0, move.file, TRAVERSE, m.plane, 0)
+        m.out.contour += ROW.pack(*move.end, *center, move.speed, *told, turns, move.file, kind, m.plane, move.flags)
 
 
 class Nist(Compensation):
