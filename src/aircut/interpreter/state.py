@@ -134,7 +134,9 @@ class State:
 
     def to_space(self, place: Place) -> Place:
         """From the program's frame to machine coordinates, without the tool's offset."""
-        moved = [p + o for p, o in zip(place, self.offset, strict=True)]
+        x, y, z, a, b, c = place  # written out, as every move under a stage comes by
+        i, j, k, l, m, n = self.offset  # noqa: E741
+        moved = [x + i, y + j, z + k, a + l, b + m, c + n]
         return moved if self.frame is None else self.frame.to_space(moved)
 
     def to_program(self, place: Place) -> Place:
