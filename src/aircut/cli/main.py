@@ -16,7 +16,7 @@ from aircut import __version__
 
 FORMATS = ("summary", "canon", "json")
 TIME_FORMATS = ("table", "json", "csv")
-CHECK_FORMATS = ("text", "json", "sarif", "github")
+CHECK_FORMATS = ("text", "json", "sarif", "github", "vendor")
 PICTURES = (".png", ".svg", ".html")
 
 FILE = click.Path(path_type=Path)

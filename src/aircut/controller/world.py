@@ -5,6 +5,7 @@ Lengths mm in machine coordinates, times seconds since the run began.
 
 from __future__ import annotations
 
+from math import cos, radians, sin
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -25,6 +26,7 @@ class Body(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     box: `at` is its lowest corner, `size` its edges. cylinder: `at` is the middle of its base, `axis` its
     direction. sphere: `at` is its middle. stl: a file beside the world's, moved by `at`.
+    turn: degrees about X, then Y, then Z of the machine, with `at` staying in its place.
     """
 
     shape: Literal["box", "cylinder", "sphere", "stl"]
@@ -34,6 +36,7 @@ class Body(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     radius: float = 0.0
     height: float = 0.0
     file: str = ""
+    turn: Point = (0.0, 0.0, 0.0)
 
 
 class Input(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -95,7 +98,11 @@ class World:
         from aircut.geometry import contact
 
         try:
-            return getattr(self, f"_{body.shape}")(body, contact)
+            make = getattr(self, f"_{body.shape}")
+            if not any(body.turn):
+                return make(body, contact)
+            made = make(msgspec.structs.replace(body, at=(0.0, 0.0, 0.0)), contact)
+            return contact.Placed(made, body.at, rotation(body.turn))
         except (ValueError, OSError) as error:
             raise WorldError(f"{body.shape} at {body.at}: {error}") from None
 
@@ -123,6 +130,16 @@ class World:
         if not made.closed:
             self.warnings.append(f"{body.file}: the surface is not closed: it counts as a sheet, with nothing inside")
         return made
+
+
+def rotation(turn: Point) -> tuple[Point, Point, Point]:
+    """Rows of the matrix that turns about X, then Y, then Z, degrees."""
+    (sa, sb, sc), (ca, cb, cc) = (tuple(map(f, map(radians, turn))) for f in (sin, cos))
+    return (
+        (cb * cc, sa * sb * cc - ca * sc, ca * sb * cc + sa * sc),
+        (cb * sc, sa * sb * sc + ca * cc, ca * sb * sc - sa * cc),
+        (-sb, sa * cb, ca * cb),
+    )
 
 
 def load(path: Path) -> World:

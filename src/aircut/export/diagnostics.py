@@ -1,4 +1,4 @@
-"""Diagnostics for machines: JSON, SARIF 2.1.0 and GitHub's workflow commands."""
+"""Diagnostics for machines: JSON, SARIF 2.1.0, GitHub's workflow commands, and the vendor's own lines."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from aircut.diagnostics import FAULTS, Diagnostic
+from aircut.diagnostics import FAULTS, Diagnostic, Severity
 
 JSON_VERSION = 1
 
@@ -79,8 +79,14 @@ def escaped(text: str, property: bool = False) -> str:
     return text.replace(":", "%3A").replace(",", "%2C") if property else text
 
 
+def to_vendor(diagnostics: Sequence[Diagnostic]) -> str:
+    """Errors a line each, as the vendor's controller writes them; it knows no warnings."""
+    return "".join(f"{d.vendor()}\n" for d in diagnostics if d.severity is Severity.ERROR)
+
+
 FORMATS: dict[str, Callable[[Sequence[Diagnostic]], str]] = {
     "json": to_json,
     "sarif": to_sarif,
     "github": to_github,
+    "vendor": to_vendor,
 }
