@@ -42,7 +42,8 @@ class Source:
 
     name: as shown to the user. data: the bytes; line ends LF or CR LF (CR alone
     where there is no LF at all), a byte order mark and a final Ctrl-Z are dropped.
-    starts: byte at which each line starts. classes: scan.BLANK, PLAIN or OTHER each.
+    starts: byte at which each line starts. classes: scan.BLANK, PLAIN or OTHER each;
+    a plain line with a fault in it becomes OTHER when its words are read.
     Lines are numbered from 0 here; people see them from 1.
     """
 
@@ -56,13 +57,11 @@ class Source:
             data = data[: -len(END_OF_FILE)]
         self.data = data
         count = data.count(b"\n") + (not data.endswith(b"\n") and bool(data))
-        self.starts = array("q", bytes(8 * count))
+        self.starts = array("q", [0]) * count
         self.classes = bytearray(count)
         self._single = Batch(1)
-        batch = Batch(min(BATCH, max(count, 1)))
-        at = 0
-        for first in range(0, count, BATCH):
-            at = self._scan(batch, first, min(BATCH, count - first), at)
+        if count:
+            scan.lines(data, self.starts, self.classes, scan.SORTS)
 
     @classmethod
     def load(cls, path: Path) -> Source:
@@ -71,6 +70,11 @@ class Source:
 
     def __len__(self) -> int:
         return len(self.classes)
+
+    @property
+    def ended(self) -> int:
+        """How many lines end with a line feed: all, or all but the last."""
+        return len(self) - (not self.data.endswith(b"\n") and len(self) > 0)
 
     def _scan(self, batch: Batch, first: int, count: int, at: int) -> int:
         batch.first = first

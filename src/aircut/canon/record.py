@@ -7,7 +7,7 @@ a run can be streamed; a Recording puts the chunks together again.
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple
 
 from aircut.canon.commands import COMMANDS
@@ -15,6 +15,7 @@ from aircut.canon.tips import setups_of
 from aircut.canon.toolpath import ROW, Toolpath
 
 CHUNK = 1 << 16  # moves a chunk
+LARGE = 1 << 22  # bytes from which NumPy's memory is the cheaper one
 NAMES = tuple(COMMANDS)
 NUMBERS = {name: number for number, name in enumerate(NAMES)}
 
@@ -33,7 +34,7 @@ class Chunk(NamedTuple):
     """Part of a run."""
 
     first: int  # index of its first move
-    rows: bytes  # packed moves (canon.ROW)
+    rows: bytes | memoryview  # packed moves (canon.ROW)
     events: Events
     contour: bytes = b""  # packed moves as programmed, where compensation leads the tool beside them
 
@@ -87,11 +88,28 @@ class Recorder:
     written, in the same order.
     """
 
-    __slots__ = ("at_once", "contour", "events", "file", "first", "line", "marks", "rows")
+    __slots__ = (
+        "arena",
+        "at_once",
+        "contour",
+        "events",
+        "file",
+        "first",
+        "line",
+        "marks",
+        "room",
+        "rows",
+        "stowed",
+        "used",
+    )
 
     def __init__(self) -> None:
-        self.first = 0
+        self.first = 0  # index of the first of `rows`
         self.rows = bytearray()
+        self.arena: memoryview | None = None  # where kernels write; it becomes chunks without being copied
+        self.used = 0  # bytes of the arena
+        self.stowed = 0  # of these, handed out
+        self.room = 0  # rows of a new arena; 0: a chunk's
         self.contour = bytearray()
         self.events = Events()
         self.line = 0
@@ -141,25 +159,86 @@ class Recorder:
             column.insert(self.marks[0], column.pop())
         self.marks = [mark + 1 for mark in self.marks]
 
+    def space(self, rows: int) -> memoryview:
+        """Memory for this many rows, behind those written so far; `fill` tells how many of them are."""
+        size = (rows * ROW.size) + len(self.rows)
+        if self.arena is None or self.used + size > len(self.arena):
+            self.arena = memory(max(rows + CHUNK // 4, self.room) * ROW.size + len(self.rows))
+            self.used = self.stowed = 0
+        start = self.used + len(self.rows)
+        return self.arena[start : start + rows * ROW.size]
+
+    def fill(self, count: int, few: int) -> None:
+        """The first rows of the `space` are written. Where they are no more than a few, they join the others."""
+        assert self.arena is not None
+        start = self.used + len(self.rows)
+        if count <= few:
+            self.rows += self.arena[start : start + count * ROW.size]
+        else:
+            self.stow()
+            self.used += count * ROW.size
+            self.first += count
+
+    def stow(self) -> None:
+        """Move the rows into the arena."""
+        size = len(self.rows)
+        if self.arena is not None and size:
+            self.arena[self.used : self.used + size] = self.rows
+            self.used += size
+            self.first += size // ROW.size
+            self.rows = bytearray()
+
+    def tell_feeds(self, at: Iterable[int], lines: Iterable[int], feeds: Iterable[float]) -> None:
+        """SET_FEED_RATE for each of these moves and lines, mm/min."""
+        events = self.events
+        before = len(events)
+        events.at.extend(at)
+        for line in lines:
+            events.line.append(line)
+        events.values.extend((feed,) for feed in feeds)
+        count = len(events) - before
+        events.file.extend([self.file] * count)
+        events.name.extend([NUMBERS["SET_FEED_RATE"]] * count)
+
     def take(self) -> Chunk:
         """Hand out what has been written and start anew; what waits stays."""
         events = self.events
         done = self.marks[0] if self.marks else len(events)
         self.events = events.cut(done)
         self.marks = [mark - done for mark in self.marks]
-        chunk = Chunk(self.first, bytes(self.rows), events, bytes(self.contour))
-        self.first += len(self.rows) // ROW.size
+        if self.arena is not None and self.used + len(self.rows) <= len(self.arena):
+            self.stow()
+        rows: bytes | memoryview
+        if self.arena is not None and self.used > self.stowed:
+            rows = self.arena[self.stowed : self.used]
+            self.stowed = self.used
+            if self.rows:
+                rows = bytes(rows) + bytes(self.rows)
+                self.first += len(self.rows) // ROW.size
+        else:
+            rows = bytes(self.rows)
+            self.first += len(rows) // ROW.size
+        chunk = Chunk(self.first - len(rows) // ROW.size, rows, events, bytes(self.contour))
         self.rows = bytearray()
         self.contour = bytearray()
         return chunk
+
+
+def memory(size: int) -> memoryview:
+    """Memory not filled with anything where that is much cheaper."""
+    if size < LARGE:
+        return memoryview(bytearray(size))
+    import numpy as np
+
+    return np.empty(size, np.uint8).data
 
 
 class Recording:
     """A whole run: toolpath and events. `files` names what the file indices mean."""
 
     def __init__(self) -> None:
-        self.chunks: list[bytes] = []
-        self.contours: list[bytes] = []
+        self.chunks: list[bytes | memoryview] = []
+        self.contours: list[bytes | memoryview] = []
         self.moves = 0
         self.events = Events()
         self.files: list[str] = []

@@ -83,6 +83,35 @@ class Extents(NamedTuple):
     high: tuple[float, ...]
 
 
+def columns_of(rows: NDArray[Any]) -> dict[str, NDArray[Any]]:
+    """Views of the packed rows' columns."""
+    return {name: rows[name] for name in rows.dtype.names or ()}
+
+
+def joined(chunks: list[bytes | memoryview]) -> NDArray[Any]:
+    """Chunks of packed rows as one array; the list is emptied on the way to spare memory.
+
+    Chunks that lie end to end in one memory are not copied.
+    """
+    import numpy as np
+
+    kind = row_type()
+    parts = [np.frombuffer(chunk, np.uint8) for chunk in chunks]
+    chunks.clear()
+    ends = [part.ctypes.data + len(part) for part in parts]
+    if parts and all(part.ctypes.data == end for part, end in zip(parts[1:], ends, strict=False)):
+        whole = np.lib.stride_tricks.as_strided(parts[0], (sum(map(len, parts)),), writeable=False)
+        return whole.view(kind)
+    rows = np.empty(sum(map(len, parts)) // kind.itemsize, kind)
+    at = 0
+    parts.reverse()
+    while parts:
+        part = parts.pop().view(kind)
+        rows[at : at + len(part)] = part
+        at += len(part)
+    return rows
+
+
 class Toolpath:
     """All moves of a run, as NumPy columns named as in COLUMNS: `toolpath.x`, `toolpath.line`, …
 
@@ -128,23 +157,13 @@ class Toolpath:
     @classmethod
     def of_rows(
         cls,
-        chunks: list[bytes],
+        chunks: list[bytes | memoryview],
         start: Iterable[float] = (0.0,) * 6,
         setups: Sequence[tuple[int, Setup]] = (),
     ) -> Toolpath:
         """From packed rows (ROW); the list is emptied on the way to spare memory."""
-        import numpy as np
 
-        kind = row_type()
-        count = sum(len(chunk) for chunk in chunks) // ROW.size
-        columns = {name: np.empty(count, kind[name]) for name in kind.names or ()}
-        at = count
-        while chunks:
-            rows = np.frombuffer(chunks.pop(), kind)
-            for name, column in columns.items():
-                column[at - len(rows) : at] = rows[name]
-            at -= len(rows)
-        return cls(columns, start, setups)
+        return cls(columns_of(joined(chunks)), start, setups)
 
     def __len__(self) -> int:
         return len(self.kind)

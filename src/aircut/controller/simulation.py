@@ -89,7 +89,7 @@ class Simulation:
         out = self.interpreter.state.out
         self.count(bytes(out.rows), out.first, out.events, out.marks[0] if out.marks else None)
 
-    def count(self, rows: bytes, first: int, events: Events, settled: int | None = None) -> None:
+    def count(self, rows: bytes | memoryview, first: int, events: Events, settled: int | None = None) -> None:
         """Add the time of the moves and dwells that have not been counted yet.
 
         settled: events from this one on may still change places.

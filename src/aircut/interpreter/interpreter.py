@@ -16,6 +16,7 @@ from aircut.interpreter.auxiliary import End, Restart
 from aircut.interpreter.calls import ARGUMENTS, Call, Return
 from aircut.interpreter.compiling import FAILURES, explain
 from aircut.interpreter.inputs import switched_off
+from aircut.interpreter.lane import Lane
 from aircut.interpreter.midway import Midway
 from aircut.interpreter.requests import Request
 from aircut.interpreter.running import WHOLE, Mode, Run, Settings, Stopped
@@ -33,6 +34,7 @@ from aircut.machine.stops import Stop
 from aircut.source import Source
 
 FULL = CHUNK * ROW.size
+STRETCH = 4  # lines without others among them that the fast lane is worth while for
 PLAIN, BLANK = scan.PLAIN, scan.BLANK
 DEEPEST_CALL = 100
 WATCH = 64  # passes through a loop that are compared with one before
@@ -72,6 +74,7 @@ class Interpreter(Run):
         self.ran = False  # the program was fit to be run
         self.returned = False  # the file ended by M99, as macros do
         self.plans: dict[bytes, Shape] = {}
+        self.lane = Lane(self.state, min(len(source), settings.limits.moves or 0))
         self.routine = self.unit.entry()
         self.repeated = 0
         self.passes = 0
@@ -239,9 +242,9 @@ class Interpreter(Run):
         try:
             if unit.source.classes[line] == BLANK:
                 return False
-            if unit.source.classes[line] == PLAIN:
-                shape = self.plan(unit.source.words(line)[0])
-                names = shape.codes if shape else ()
+            shape = self.shape(unit, line)
+            if shape is not None:
+                names = shape.codes
             else:
                 statement, _ = unit.statement(line)
                 if not isinstance(statement, Statement):
@@ -261,10 +264,8 @@ class Interpreter(Run):
     def check_line(self, unit: Unit, line: int) -> None:
         """Tell what is wrong with the form of a line: its text, its codes, its words."""
         try:
-            if unit.source.classes[line] == PLAIN:
-                shape = self.plan(unit.source.words(line)[0])
-                if shape is None:
-                    return
+            shape = self.shape(unit, line)
+            if shape is not None:
                 codes, letters = shape.codes, shape.letters
             else:
                 statement, _ = unit.statement(line)
@@ -290,6 +291,7 @@ class Interpreter(Run):
         while True:
             unit, end = self.unit, self.bound()
             classes, seen, cache = unit.source.classes, unit.seen, unit.plain
+            slow = unit.slow
             here = True
             while here:
                 if line >= end:
@@ -313,9 +315,19 @@ class Interpreter(Run):
                 m.line = out.line = line + 1
                 try:
                     if kind == PLAIN:
+                        if not slow[line]:
+                            after = self.glide(line)
+                            if after > line:
+                                line = after
+                                if out.used > out.stowed:
+                                    self.check_moves()
+                                    yield out.take()
+                                continue
                         known = cache.get(line)
                         if known is None:
                             words, values = unit.words(line)
+                            if classes[line] != PLAIN:
+                                continue
                             shape = plans.get(words) or self.plan(words)
                             if shape is None:
                                 classes[line] = scan.OTHER
@@ -348,6 +360,24 @@ class Interpreter(Run):
                         yield out.take()
                     else:
                         self.midway.drop(m)
+
+    def glide(self, line: int) -> int:
+        """Run a stretch of plain motion in the fast lane; returns the line to go on with, `line` if there is none."""
+        unit = self.unit
+        m = self.state
+        if self.mark or unit.source.classes.find(scan.OTHER, line, line + STRETCH) >= 0 or not self.lane.open(m):
+            unit.slow[line] = 1
+            return line
+        after = self.lane.run(m, unit.source, line, self.routine.end)
+        if after == line:
+            unit.slow[line] = 1
+            return line
+        unit.seen[line:after] = b"\x01" * (after - line)
+        self.line = after - 1
+        row = self.lane.motions[self.lane.motion]
+        if row is not m.motion:
+            self.set_mode(row)
+        return after
 
     def recover(self, refusal: Refusal) -> None:
         """Make ready for the block after one at fault."""
@@ -389,6 +419,13 @@ class Interpreter(Run):
             return None  # its M is an argument
         shape = self.plans[words] = Shape(tuple(codes), tuple(letters), {})
         return shape
+
+    def shape(self, unit: Unit, line: int) -> Shape | None:
+        """What a plain line means; None for all others."""
+        if unit.source.classes[line] != PLAIN:
+            return None
+        words = unit.source.words(line)[0]
+        return self.plan(words) if unit.source.classes[line] == PLAIN else None
 
     def is_macro(self, name: str) -> bool:
         return name[0] == "g" and name in self.dialect.codes and self.dialect.codes[name].sole

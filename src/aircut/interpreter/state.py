@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 INCH = 25.4  # mm
 PLANES = ("XY", "XZ", "YZ")  # by plane number, as canonical commands name them
 WORK_SYSTEMS = 9
+ENDLESS = ((float("-inf"),) * 6, (float("inf"),) * 6)
 
 
 class State:
@@ -151,6 +152,10 @@ class State:
         on = 1.0 if self.shifted else 0.0
         self.offset = [origin[i] + local[i] + on * shift[i] for i in range(6)]
         self.position = self.to_program(here)
+
+    def bounds(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Lowest and highest place in space that the axes can bring the controlled point to, mm and degrees."""
+        return ENDLESS
 
     def set_frame(self, frame: Frame | None) -> None:
         """Put a frame in force; the machine position stays."""

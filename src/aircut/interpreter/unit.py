@@ -75,6 +75,7 @@ class Unit:
         self.shared: dict[str, Statement] = {}
         self.encoding: list[tuple[int, Refusal]] = []  # warnings
         self.seen = bytearray(len(source))
+        self.slow = bytearray(len(source))  # plain lines at which the fast lane has got nowhere
         self.percent = False
         self.plain: dict[int, tuple[Shape, Any]] = {}  # plain lines that run again
         self.batch = Batch(min(BATCH, max(len(source), 1)))

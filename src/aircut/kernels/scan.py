@@ -1,5 +1,7 @@
-"""One pass over the bytes of a program: where lines start, what class they are,
-and the words of those that are plain.
+"""The bytes of a program: where lines start, what class they are, and the words of those that are plain.
+
+`lines` goes over the whole text once, and takes a line to be plain by its characters;
+`scan` reads the words, and finds the few that are faulty to be OTHER.
 
 A plain line holds nothing but words of one letter and a literal number
 (`N10 G1 X1.5 Y-2`), blanks and a `;` comment. Its shape is its letters, with the
@@ -25,6 +27,14 @@ WORDS = 32  # at most in a plain line
 SHAPE = WORDS * 6  # bytes of a shape at most: letter, up to five of a code's number
 
 # Exact powers: a 15-digit integer divided by one is the correctly rounded number.
+BLOCK = 512  # bytes that are looked at together
+# By byte: 0 blank, 1 letter of a word, 2 number, 4 comment to the line's end, 8 anything else.
+SORTS = bytes(
+    0 if char in "\t\r " else 2 if char in "0123456789.+-" else 4 if char == ";" else
+    1 if char.isascii() and char.isalpha() and char not in "oO" else 8
+    for char in map(chr, range(256))
+)  # fmt: skip
+
 POWERS = (1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15)
 DIGITS = 15
 
@@ -184,3 +194,87 @@ def scan(
         value_ends[row] = value_at
         row += 1
     return at
+
+
+@cython.boundscheck(False)
+@cython.wraparound(False)
+def lines(
+    data: cython.const[cython.uchar][::1],
+    starts: cython.longlong[::1],
+    classes: cython.uchar[::1],
+    sorts: cython.const[cython.uchar][::1],
+):
+    """Find all lines: where they start, and their classes by their characters. sorts: SORTS.
+
+    A block of bytes that holds only what stands in lines of plain motion is not
+    looked at any closer than for its line feeds.
+    """
+    size: cython.Py_ssize_t = len(data)
+    at: cython.Py_ssize_t = 0
+    clean_to: cython.Py_ssize_t = 0
+    end: cython.Py_ssize_t
+    i: cython.Py_ssize_t
+    row: cython.Py_ssize_t = 0
+    block: cython.Py_ssize_t = BLOCK
+    foreign: cython.int
+    c: cython.uchar
+    low: cython.uchar
+    sort: cython.int
+    before: cython.int
+    kind: cython.int
+    blank: cython.int = BLANK
+    plain: cython.int = PLAIN
+    other: cython.int = OTHER
+
+    while at < size:
+        starts[row] = at
+        if at >= clean_to:
+            # Lines that start within the block before clean_to are made of its bytes up to there.
+            end = at + block if at + block < size else size
+            foreign = 0
+            for i in range(at, end):
+                c = data[i]
+                low = (c | 32) - 97
+                foreign |= not (
+                    (((c - 43) & 255) <= 14 and c != 44 and c != 47)
+                    or c == 10 or c == 32 or c == 13
+                    or (c >= 65 and (low <= 2 or low == 5 or low == 6 or ((low - 8) & 255) <= 2
+                        or low == 13 or low == 17 or ((low - 23) & 255) <= 2))
+                )  # fmt: skip
+            clean_to = at if foreign else end
+        if at < clean_to:
+            i = at
+            while i < clean_to and data[i] != 10:
+                i += 1
+            c = data[at]
+            if i < clean_to and c >= 65:
+                classes[row] = plain
+                row += 1
+                at = i + 1
+                continue
+        kind = blank
+        before = 0
+        while at < size:
+            c = data[at]
+            if c == 10:
+                break
+            sort = sorts[c]
+            if sort == 4:
+                while at < size and data[at] != 10:
+                    at += 1
+                break
+            if sort == 8 or (sort == 1 and before == 1) or (sort == 2 and before == 0):
+                kind = other
+                while at < size and data[at] != 10:
+                    at += 1
+                break
+            if sort:
+                kind = plain
+                before = sort
+            at += 1
+        if before == 1 and kind == plain:
+            kind = other
+        classes[row] = kind
+        row += 1
+        at += 1
+    return row

@@ -67,7 +67,7 @@ class Watch:
     def add(self, chunk: Chunk) -> None:
         """Look at one chunk."""
         rows = chunk.rows
-        kinds = rows[KIND :: ROW.size]
+        kinds = bytes(rows[KIND :: ROW.size])
         heights: list[Any] = memoryview(rows).cast("d")[Z::DOUBLES].tolist()
         at = 0
         events = chunk.events
@@ -95,7 +95,7 @@ class Watch:
         if self.turning and self.speed > 0.0:
             self.told = False
 
-    def stretch(self, rows: bytes, kinds: bytes, heights: list[Any], start: int, end: int) -> None:
+    def stretch(self, rows: bytes | memoryview, kinds: bytes, heights: list[Any], start: int, end: int) -> None:
         """Moves between two events that matter."""
         if start == end:
             return
@@ -129,7 +129,7 @@ class Watch:
             self.depth = min(self.depth, lowest) if self.cutting and first == start else lowest
         self.cutting = last == end and (last > start or self.cutting)
 
-    def find_lengths(self, rows: bytes, start: int, end: int) -> None:
+    def find_lengths(self, rows: bytes | memoryview, start: int, end: int) -> None:
         """The first move to a length, with the units not said."""
         for at in range(start, end):
             if LENGTHS.search(self.text(rows, at)):
@@ -137,7 +137,7 @@ class Watch:
                 self.tell(F.NO_UNITS, rows, at)
                 return
 
-    def find_cut(self, rows: bytes, kinds: bytes, start: int, end: int) -> None:
+    def find_cut(self, rows: bytes | memoryview, kinds: bytes, start: int, end: int) -> None:
         """The first feed move that does not just leave the work."""
         for match in CUTS.finditer(kinds, start, end):
             at = match.start()
@@ -148,7 +148,7 @@ class Watch:
                     self.told = True
                     return
 
-    def find_plunge(self, rows: bytes, heights: list[Any], moves: range, limit: float) -> None:
+    def find_plunge(self, rows: bytes | memoryview, heights: list[Any], moves: range, limit: float) -> None:
         """Rapids that go down, below all that has been cut there."""
         zero = self.system_z + self.shift_z
         for at in moves:
@@ -159,13 +159,13 @@ class Watch:
                     depth = f"the last cut was at Z{self.depth - zero:.4g} mm"
                 self.tell(F.RAPID_BELOW_CUT, rows, at, height=heights[at] - zero, depth=depth)
 
-    def text(self, rows: bytes, at: int) -> bytes:
+    def text(self, rows: bytes | memoryview, at: int) -> bytes:
         """The line of a move."""
         row = ROW.unpack_from(rows, at * ROW.size)
         source = self.run.units[self.run.files[row[FILE]]].source
         return bytes(source.raw(row[LINE] - 1)) if row[LINE] else b""
 
-    def tell(self, fault: Fault, rows: bytes, at: int, **values: Any) -> bool:
+    def tell(self, fault: Fault, rows: bytes | memoryview, at: int, **values: Any) -> bool:
         """Note the fault of a move; False where it stands in another file."""
         row = ROW.unpack_from(rows, at * ROW.size)
         if row[FILE] or not row[LINE]:
