@@ -735,7 +735,7 @@ class Interpreter(Run):
             return self.run_off()
         m = self.state
         level = self.stack.pop()
-        self.count(m.line - self.routine.first, self.routine.first, m.line - 1)
+        self.count(max(m.line - self.routine.first, 0), self.routine.first, m.line - 1)
         if level.left > 1:
             self.stack.append(level._replace(left=level.left - 1))
             if level.call.own_locals:

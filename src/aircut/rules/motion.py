@@ -122,7 +122,7 @@ class Watch:
 
     def pass_over(self, kinds: bytes, heights: list[Any], start: int, end: int) -> None:
         """Moves without a rapid below zero: what matters is where the last cut among them went."""
-        last = len(kinds[:end].rstrip(RAPID))
+        last = start + len(kinds[start:end].rstrip(RAPID))
         if last > start:
             first = max(kinds.rfind(RAPID, start, last) + 1, start)
             lowest = min(heights[first:last])
