@@ -299,6 +299,7 @@ UNDER_COMPENSATION = Fault(
     "under-compensation", "{what} is not possible while cutter radius compensation is on", "program G40 before"
 )
 NO_TOOL = Fault("no-tool", "tool {tool} is not in the tool table")
+POLAR_AND_AXES = Fault("polar-and-axes", "X or Y beside @ and ^", "polar words say where in X and Y")
 TOO_MANY_M = Fault("too-many-m", "more than four M words in one block")
 WRONG_STATE = Fault("wrong-state", "{what}", "{hint}", why="The code is fine, but not as the machine stands now.")
 O_WORD = Fault("o-word", "{what}", "{hint}", why="A word of program flow that does not fit where it stands.")

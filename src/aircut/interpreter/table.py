@@ -120,6 +120,7 @@ class Code(NamedTuple):
     alone: str = ""  # the code that the axis words beside it mean
     cycle: bool = False  # a canned cycle: what State.cycle holds stays in force
     sole: bool = False  # the only G or M code of its block; every letter is its argument
+    check: Handler | None = None  # finds faults of form in the values of the words
     counts: str = ""  # letters of words that must be whole numbers
     text: bool = False  # its P may be a string
     supported: bool = True  # False: run raises not-supported-yet

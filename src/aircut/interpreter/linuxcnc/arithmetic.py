@@ -28,8 +28,36 @@ def arc_tangent(y: float, x: float) -> float:
     return math.degrees(math.atan2(y, x))
 
 
+def modulo(left: float, right: float) -> float:
+    """Remainder in [0, |right|); not a number where right is 0, which is refused where it is used."""
+    if right == 0.0 or math.isinf(left):
+        return math.nan
+    rest = math.fmod(left, right)
+    return rest + abs(right) if rest < 0.0 else rest
+
+
+def power(left: float, right: float) -> float:
+    """A power; infinite where it is too large."""
+    if left < 0.0 and right != math.floor(right):
+        raise Refusal(F.DOMAIN, function="a negative number to a fractional power", value=left)
+    try:
+        return math.pow(left, right)
+    except (OverflowError, ValueError):
+        return math.inf
+
+
+def divide(left: float, right: float) -> float:
+    if right == 0.0:
+        raise Refusal(F.DIVISION_BY_ZERO)
+    return left / right
+
+
 OWN: dict[str, Callable[..., float]] = {"acos": arc_cosine, "asin": arc_sine, "atan": arc_tangent}
-OPERATORS = tuple(operator for operator in HOUSE_OPERATORS if operator.name not in "&|^")
+OPERATORS = tuple(
+    row._replace(run={"mod": modulo, "**": power, "/": divide}.get(row.name, row.run))
+    for row in HOUSE_OPERATORS
+    if row.name not in "&|^"
+)
 FUNCTIONS = tuple(row._replace(run=OWN.get(row.name, row.run)) for row in HOUSE_FUNCTIONS)
 OPERATOR_ROWS = {operator.name: operator for operator in OPERATORS}
 FUNCTION_ROWS = {function.name: function for function in FUNCTIONS}

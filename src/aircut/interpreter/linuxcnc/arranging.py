@@ -6,12 +6,15 @@ Source: 001 Repeated items, Modal groups, Order of execution; the canonical list
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.state import EQUAL
 from aircut.interpreter.table import Code, Dialect, Group
+
+if TYPE_CHECKING:
+    from aircut.interpreter.linuxcnc.state import State
 
 AXIS_WORDS = frozenset("xyzabcuvw@^")
 ITEMS = "fst"  # words that are rows of their own
@@ -23,9 +26,17 @@ TURNS = 0.001  # what a P that counts turns or directions may differ from a whol
 FREE = -1.0  # a P or Q up to this may be given again
 
 
-def check_values(codes: Sequence[Code], words: Mapping[str, float]) -> None:
-    """The values that are a matter of form. Raises Refusal."""
+def check_values(m: State, codes: Sequence[Code], words: Mapping[str, float]) -> None:
+    """The values and modes that are a matter of form. Raises Refusal."""
+    if ("@" in words or "^" in words) and m.plane_code != 170:
+        raise Refusal(F.WRONG_STATE, "@", what="polar words need G17", hint="")
+    absolute = m.absolute
     for row in codes:
+        absolute = {"G90": True, "G91": False}.get(row.name, absolute)
+        if row.fits and not absolute:
+            raise Refusal(F.WRONG_STATE, "g", what="G53 is not possible under G91", hint="")
+        if row.check is not None:
+            row.check(m, words)
         for letter in row.counts:
             if letter in words:
                 value = words[letter]
@@ -106,12 +117,15 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
     if alone is not None and (len(rows) > 1 or not set(letters) <= set(alone.takes)):
         raise Refusal(F.SOLE_CODE, "m", code=alone.name, other="anything else")
     axes = [letter for letter in letters if letter in AXIS_WORDS]
+    polar = "@" in letters or "^" in letters
+    if polar and ("x" in letters or "y" in letters):
+        raise Refusal(F.POLAR_AND_AXES, "@")
     cancels = [row for row in rows if row.weak]
     rows = [row for row in rows if not (row.weak and any(o.group & row.group for o in rows if not o.weak))]
     motion = next((row for row in rows if row.group & Group.MOTION and not row.weak), None)
     takers = [row for row in rows if row.axes and row is not motion]
     if motion is not None and takers:
-        if axes or not motion.fits:
+        if axes or any(row.group & Group.NON_MODAL for row in takers):
             raise Refusal(F.AXIS_CONFLICT, "g", first=takers[0].name, second=motion.name)
     if axes and not takers and motion is None:
         if cancels:
@@ -125,6 +139,10 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
         if any(letter in modal.wakes and letter not in used for letter in letters):
             motion = modal
             rows.append(modal)
+    if polar and (takers or any(row.fits for row in rows)):
+        raise Refusal(F.UNUSED_WORD, "@", word="@ or ^")
+    if any(row.fits and (motion or modal).name not in row.fits for row in rows):
+        raise Refusal(F.MISFIT, "g", code="G53", fits="G0 or G1", motion=(motion or modal).name)
     for row in rows:
         if row.needs_axes and not axes:
             raise Refusal(F.MISSING_AXES, code=row.name)

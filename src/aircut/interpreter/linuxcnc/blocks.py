@@ -20,8 +20,10 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter import compiling
 from aircut.interpreter.linuxcnc import arithmetic
+from aircut.language.arithmetic import Function, finite
 from aircut.language.expressions import (
     Application,
+    Binary,
     Expression,
     Name,
     Number,
@@ -42,6 +44,10 @@ ENVIRONMENT = {
     **{operator.run.__name__: operator.run for operator in arithmetic.OPERATORS},
     **{f"f_{function.name}": function.run for function in arithmetic.FUNCTIONS},
 }
+
+
+BRACKETS = Function("brackets", finite, "an expression in brackets")
+ENVIRONMENT["f_brackets"] = finite
 
 
 class ValueParser(Parser):
@@ -68,6 +74,11 @@ class ValueParser(Parser):
             raise self.expected("a name and >")
         return match[0].replace(COMMENT, "")
 
+    def brackets(self) -> Application:
+        """What stands in brackets is checked to be a number; what stands between operators alone is not."""
+        start = self.at
+        return Application(BRACKETS, (super().brackets(),), (start, self.at))
+
     def application(self, function: Any) -> Application:
         if function.arguments != "name":
             return super().application(function)
@@ -81,6 +92,25 @@ class ValueParser(Parser):
 
 class Writer(compiling.Writer):
     """Writes a block's Python function."""
+
+    def checked(self, node: Expression | Text) -> tuple[str, int]:
+        text, depth = self.expression(node)
+        if isinstance(node, Application) and node.function.arguments != "name" and node.function is not BRACKETS:
+            return f"finite({text})", depth + 1
+        return text, depth
+
+    def chain(self, node: Binary) -> tuple[str, int]:
+        nodes = [node]
+        while isinstance(nodes[-1].left, Binary):
+            nodes.append(nodes[-1].left)
+        text, depth = self.checked(nodes[-1].left)
+        for link in reversed(nodes):
+            right, other = self.checked(link.right)
+            joined = f"({text} {link.operator.name} {right})"
+            if not link.operator.inline:
+                joined = f"{link.operator.run.__name__}({text}, {right})"
+            text, depth = self.step(joined, max(depth, other) + 1)
+        return text, depth
 
     def variable(self, node: Variable) -> tuple[str, int]:
         if isinstance(node.number, Number) and node.number.value == int(node.number.value):
@@ -117,9 +147,9 @@ def build(writer: Writer, result: str) -> Callable[..., Any]:
 
 
 def compiled(*nodes: Expression) -> Callable[..., tuple[float, ...]]:
-    """The function (state, literals) -> values of some expressions."""
+    """The function (state, literals) -> values of some expressions, which may be infinite or no numbers."""
     writer = Writer(None)  # type: ignore[arg-type]  # this language's variables need no table
-    return build(writer, compiling.tuple_text([writer.write(node) for node in nodes]))
+    return build(writer, compiling.tuple_text([writer.expression(node)[0] for node in nodes]))
 
 
 class Block(NamedTuple):
@@ -136,7 +166,7 @@ class OLine(NamedTuple):
     """An O-word: its label and keyword, and what follows, not yet read."""
 
     label: str | Callable[..., tuple[float, ...]]  # a name, or a function of the number
-    keyword: str  # "" for a bare number
+    keyword: str  # "" for a bare number, "?" for what is none
     rest: str
 
 
@@ -158,8 +188,8 @@ def parse_o(code: str) -> OLine | None:
             label = compiled(node)
     keyword = KEYWORD.match(code, parser.at)
     if keyword is None:
-        if code[parser.at :].strip(COMMENT):
-            raise parser.expected("an O-word such as CALL or IF")
+        if rest := code[parser.at :].strip(COMMENT):
+            return OLine(label, "?", rest)
         return OLine(label, "", "")
     return OLine(label, keyword[0], code[keyword.end() :].replace(COMMENT, ""))
 
@@ -169,7 +199,7 @@ def arguments(rest: str, least: int, most: int) -> Callable[..., tuple[float, ..
     parser = ValueParser(rest)
     nodes: list[Expression] = []
     while len(nodes) < most and rest.startswith("[", parser.at):
-        nodes.append(parser.brackets())
+        nodes.append(parser.brackets().arguments[0])  # not checked here
     if len(nodes) < least:
         raise parser.expected("[expression]")
     if parser.at < len(rest):

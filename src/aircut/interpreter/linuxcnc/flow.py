@@ -118,6 +118,8 @@ class Flow:
             return
         if line.keyword == "sub" and search.kinds == ("endsub",):
             raise refuse("a subroutine inside a subroutine")
+        if line.keyword == "?" and search.kinds != ("endsub",):
+            self.unknown(line, name)
         label = name if line.keyword == "endsub" else self.scoped(name)
         if label != search.label or line.keyword not in search.kinds:
             return
@@ -217,7 +219,7 @@ class Flow:
         else:
             (count,) = self.values(line, 1, 1)
             known = self.mark(label, "repeat")
-            known.left = round(count) if abs(count) < 1e15 else 0
+            known.left = round(count) if abs(count) < 1e9 else 0
             known.taken = True
         if known.left <= 0:
             known.taken = False
@@ -291,7 +293,6 @@ class Flow:
         if values is not None:
             kept = m.numbered[1 : LOCALS + 1]
             m.numbered[1 : LOCALS + 1] = [*values, *[0.0] * (LOCALS - len(values))]
-        m.value_returned = False
         self.stack.append(Level(run.unit, run.next_line, self.sub, kept, m.scope, name, fanuc, m.saved, count))
         m.calls = len(self.stack)
         if not fanuc:
@@ -351,8 +352,11 @@ class Flow:
             self.leave()
         return True
 
+    def unknown(self, line: OLine, name: str, sought: bool = False) -> None:
+        raise Refusal(F.EXPECTED, wanted="an O-word such as CALL or IF", found=f"“{line.rest[:12]}”", hint="")
+
     WORDS: dict[str, Callable[..., None]] = {
-        "": bare, "sub": sub_, "endsub": endsub, "call": call_, "return": return_,
+        "": bare, "?": unknown, "sub": sub_, "endsub": endsub, "call": call_, "return": return_,
         "if": if_, "elseif": elseif, "else": else_, "endif": endif,
         "while": while_, "endwhile": endwhile, "do": do,
         "repeat": repeat, "endrepeat": endrepeat, "break": break_, "continue": continue_,

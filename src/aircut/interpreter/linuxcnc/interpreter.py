@@ -163,10 +163,12 @@ class Interpreter(Run):
         if line.oline is not None:
             self.flow.step(line.oline)
             return
+        if line.code == "%" and self.percent and not (self.flow.stack and self.flow.search is None):
+            self.close()
         if self.flow.search is not None:
             return
         if line.code == "%":
-            self.close()
+            raise Refusal(F.MISPLACED_PERCENT)
         self.block(line)
 
     def block(self, line: Line) -> None:
@@ -174,7 +176,7 @@ class Interpreter(Run):
         m = self.state
         if m.stale:
             m.stale = False
-            m.position = m.to_program(m.reached)
+            m.position = m.told[:]
         m.numbered[5600] = m.numbered[5601] = 0.0
         block = line.block
         if block is None:
@@ -186,7 +188,7 @@ class Interpreter(Run):
             steps = self.steps.get(key)
             if steps is None:
                 steps = self.steps[key] = arrange(names, words, self.modal, self.dialect)
-            check_values(steps.codes, words)
+            check_values(m, steps.codes, words)
         else:
             steps, words = None, {}
         if block.targets:
@@ -234,7 +236,6 @@ class Interpreter(Run):
         m.codes = steps.codes
         m.words = words
         m.machine_frame = False
-        m.plane_before = m.plane_code
         m.changed = None
         for row in steps.codes:
             if row.modal:
@@ -275,10 +276,10 @@ class Interpreter(Run):
         raise Stopped
 
     def close(self) -> None:
-        """A second percent sign. Raises Refusal, Stopped."""
-        if not self.percent or self.flow.stack:
-            raise Refusal(F.MISPLACED_PERCENT)
+        """A second percent sign. Raises Stopped."""
         self.state.out.event("FINISH")
+        if self.flow.search is not None:
+            self.tell_refusal(Refusal(F.NO_SUBROUTINE, name=self.flow.search.label, hint=""))
         raise Stopped
 
     def finish(self) -> None:

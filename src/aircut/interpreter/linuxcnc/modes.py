@@ -93,17 +93,21 @@ def constant_revolutions(m: State, w: Words) -> None:
 
 
 def orient(m: State, w: Words) -> None:
-    """M19: turn the spindle to R degrees, and wait for it with Q. Raises Refusal."""
+    """M19: turn the spindle to R degrees, and wait for it with Q."""
+    if "r" in w or "p" in w:
+        m.out.event("ORIENT_SPINDLE", 0, w.get("r", 0.0), int(w.get("p", 0.0)))
+    if "q" in w:
+        m.out.event("WAIT_ORIENT_COMPLETE", 0, w["q"])
+
+
+def check_orient(m: State, w: Words) -> None:
+    """Raises Refusal."""
     if "r" in w and not 0.0 <= w["r"] <= 360.0:
         raise Refusal(F.BAD_VALUE, "r", word="R", value=w["r"], wanted="0 to 360 degrees")
     if "p" in w and w["p"] not in (0.0, 1.0, 2.0):
         raise Refusal(F.BAD_VALUE, "p", word="P", value=w["p"], wanted="0, 1 or 2")
     if "q" in w and w["q"] <= 0.0:
         raise Refusal(F.BAD_VALUE, "q", word="Q", value=w["q"], wanted="seconds above zero")
-    if "r" in w or "p" in w:
-        m.out.event("ORIENT_SPINDLE", 0, w.get("r", 0.0), int(w.get("p", 0.0)))
-    if "q" in w:
-        m.out.event("WAIT_ORIENT_COMPLETE", 0, w["q"])
 
 
 # --- planes, units, distances
@@ -293,7 +297,7 @@ CODES = (
     Code("G99", "Retract to R", partial(set_retract, 99), Group.RETRACT, Order.RETRACT),
     Code("G4", "Dwell", dwell, Group.NON_MODAL, Order.DWELL, takes="p", needs="p"),
     *(Code(f"M{n}", "Spindle", partial(turn_spindle, n), Group.SPINDLE, Order.SPINDLE, takes="$") for n in (3, 4, 5)),
-    Code("M19", "Orient the spindle", orient, Group.SPINDLE, Order.SPINDLE, takes="rpq$", counts="p"),
+    Code("M19", "Orient the spindle", orient, Group.SPINDLE, Order.SPINDLE, takes="rpq$", counts="p", check=check_orient),
     Code("M7", "Mist", partial(coolant, True), COOLANT, Order.COOLANT),
     Code("M8", "Flood", partial(coolant, False), COOLANT, Order.COOLANT),
     Code("M9", "Coolant off", partial(coolant, None), COOLANT, Order.COOLANT),

@@ -46,12 +46,6 @@ def goal(m: State, w: Words) -> list[float]:
 
 def machine_goal(m: State, w: Words) -> list[float]:
     """G53: axis words in machine coordinates; axes not named stay."""
-    if not m.absolute:
-        raise wrong("G53 is not possible under G91")
-    if "@" in w or "^" in w:
-        raise Refusal(F.UNUSED_WORD, "@", word="@ or ^")
-    if m.cutter:
-        raise Refusal(F.UNDER_COMPENSATION, what="G53")
     space = m.to_space(m.position)
     for i, letter in NUMBERED_NINE:
         if letter in w:
@@ -64,10 +58,6 @@ def machine_goal(m: State, w: Words) -> list[float]:
 
 def polar(m: State, w: Words, place: list[float]) -> None:
     """@ radius and ^ angle, about the origin of X and Y. Raises Refusal."""
-    if "x" in w or "y" in w:
-        raise Refusal(F.UNUSED_WORD, "x", word="X or Y beside @ and ^")
-    if m.plane_before != 170:
-        raise wrong("polar words need G17")
     x, y = m.position[0], m.position[1]
     origin = abs(x) < TINY and abs(y) < TINY
     radius, angle = hypot(x, y), atan2(y, x)
@@ -89,7 +79,7 @@ def go(m: State, kind: int, place: list[float], speed: float = 0.0, flags: int |
     space = m.to_space(place)
     m.way.line(m, kind, space, speed, m.flags if flags is None else flags)
     m.position = place
-    m.reached = space
+    m.told = place[:]
 
 
 def length_of(m: State, place: list[float]) -> float:
@@ -182,7 +172,7 @@ def arc(turn: int, m: State, w: Words) -> None:
     space = m.to_space(end)
     m.way.arc(m, space, center_in_space(m, u, v, center), turn * turns, speed, feed_flags(m))
     m.position = end
-    m.reached = space
+    m.told = end[:]
 
 
 def center_in_space(m: State, u: int, v: int, center: tuple[float, float]) -> tuple[float, float]:
@@ -256,7 +246,7 @@ def probe(m: State, w: Words) -> None:
     speed = m.gave_feed * m.unit
     if m.motion_name in ("g38.2", "g38.4") and all(a == b for a, b in zip(place, m.position, strict=True)):
         raise Refusal(F.PROBE_TOO_CLOSE)
-    start = m.to_program(m.reached)
+    start = m.told
     m.out.event("TURN_PROBE_ON")
     go(m, PROBE, place, speed, m.flags | EXACT_STOP)
     m.out.event("TURN_PROBE_OFF")
@@ -265,7 +255,7 @@ def probe(m: State, w: Words) -> None:
     span = sqrt(sum((place[i] - start[i]) ** 2 for i in (0, 1, 2)))
     if span > 0.0:
         back = [place[i] + (start[i] - place[i]) * (BACK_OFF / span) if i < 3 else place[i] for i in range(9)]
-        m.reached = m.to_space(back)
+        m.told = back
     m.stale = True
 
 
@@ -273,8 +263,6 @@ def go_home(stored: int, m: State, w: Words) -> None:
     """G28, G30: to the point given, then to the stored point, in the named axes if any are. Raises Refusal."""
     if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="G28 or G30")
-    if "@" in w or "^" in w:
-        raise Refusal(F.UNUSED_WORD, "@", word="@ or ^")
     place = goal(m, w)
     go(m, TRAVERSE, place)
     home = m.to_program([
@@ -301,7 +289,9 @@ CODES = (
     arc_move("G2", "Clockwise arc feed", partial(arc, -1)),
     arc_move("G3", "Counterclockwise arc feed", partial(arc, +1)),
     *(move(f"G38.{n}", "Straight probe", probe, needs_axes=True) for n in (2, 3, 4, 5)),
-    Code("G53", "Machine coordinates, for one block", machine_frame, Group.NON_MODAL, Order.NON_MODAL),
+    Code(
+        "G53", "Machine coordinates, for one block", machine_frame, Group.NON_MODAL, Order.NON_MODAL, fits=("G0", "G1")
+    ),
     Code("G80", "Cancel the motion mode", cancel, Group.MOTION, Order.MOTION, modal=True, weak=True),
     single("G28", "Go to the G28 position", partial(go_home, G28), axes=True),
     single("G30", "Go to the G30 position", partial(go_home, G30), axes=True),

@@ -53,7 +53,7 @@ NAMED = (
     flag("_units_per_minute", "G94", lambda m: m.feed_mode == 94),
     flag("_units_per_rev", "G95", lambda m: m.feed_mode == 95),
     value("_coord_system", "work system, times ten", lambda m: SYSTEMS[m.system]),
-    flag("_tool_offset", "a tool length is in force", lambda m: m.length_on),
+    flag("_tool_offset", "a tool length is in force", lambda m: any(m.tool_offset)),
     flag("_retract_r_plane", "G99", lambda m: m.retract == 99),
     flag("_retract_old_z", "G98", lambda m: m.retract == 98),
     flag("_spindle_rpm_mode", "G97", lambda m: not m.css),
@@ -72,9 +72,9 @@ NAMED = (
     value("_feed", "F", lambda m: m.gave_feed),
     value("_rpm", "S", lambda m: m.speed),
     value("_current_tool", "tool in the spindle", lambda m: m.slots[0].id),
-    value("_current_pocket", "its pocket", lambda m: m.slots[m.slot].slot if m.slot < len(m.slots) else 0),
+    value("_current_pocket", "its pocket", lambda m: m.slots[m.slot].slot if m.slot else -1),
     value("_selected_tool", "tool of T", lambda m: m.selected_tool),
-    value("_selected_pocket", "its slot", lambda m: m.selected_slot),
+    value("_selected_pocket", "its pocket", lambda m: m.slots[m.selected_slot].slot if m.selected_slot > 0 else -1),
     *(NamedParameter(f"_{a}", f"position {a.upper()}", partial(shown, i)) for i, a in enumerate(NINE)),
     *(
         NamedParameter(f"_abs_{a}", f"machine position {a.upper()}", partial(machine, i))

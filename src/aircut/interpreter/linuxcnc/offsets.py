@@ -104,7 +104,12 @@ def restore_shift(m: State, w: Words) -> None:
 
 def settings(m: State, w: Words) -> None:
     """G10: its L says what. Raises Refusal."""
-    row = m.dialect.settings.get(int(w["l"])) if "l" in w else None
+    setting_of(m, w).run(m, w)
+
+
+def setting_of(m: State, w: Words) -> Code:
+    """The row of G10's L number, its words checked. Raises Refusal."""
+    row: Code | None = m.dialect.settings.get(int(w["l"])) if "l" in w else None
     if row is None:
         raise Refusal(F.UNKNOWN_PARAMETER, "l", l=w.get("l", -1.0))
     for letter in row.needs:
@@ -113,7 +118,12 @@ def settings(m: State, w: Words) -> None:
     for letter in w:
         if letter in "ijkqrp@^" and letter not in row.takes:
             raise Refusal(F.UNUSED_WORD, letter, word=letter.upper())
-    row.run(m, w)
+    return row
+
+
+def check_settings(m: State, w: Words) -> None:
+    """Raises Refusal."""
+    setting_of(m, w)
 
 
 def system_of(m: State, w: Words) -> int:
@@ -224,7 +234,7 @@ SYSTEM_NAMES = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59
 
 CODES = (
     *(Code(name, "Work system", partial(select, i), Group.SYSTEM, Order.SYSTEM) for i, name in enumerate(SYSTEM_NAMES)),
-    single("G10", "Set offsets or tools", settings, axes=True, takes="lpijkqr"),
+    single("G10", "Set offsets or tools", settings, axes=True, takes="lpijkqr", check=check_settings),
     single("G52", "Local offset", set_local, axes=True, needs_axes=True),
     single("G92", "Let the position read as given", set_here, axes=True, needs_axes=True),
     single("G92.1", "Clear and forget G92", partial(clear_shift, True)),

@@ -21,6 +21,8 @@ def bar(m: State) -> None:
 
 
 def index(w: Words, letter: str) -> int:
+    if letter not in w:
+        raise Refusal(F.MISSING_WORD, code="M62 to M68", word=letter.upper(), meaning="the number of the output")
     number = whole(letter, w[letter])
     if number < 0:
         raise Refusal(F.BAD_VALUE, letter, word=letter.upper(), value=w[letter], wanted="an output, from 0")
@@ -57,11 +59,11 @@ def wait(m: State, w: Words) -> None:
 io = partial(Code, group=Group.IO, order=Order.IO)
 
 CODES = (
-    io("M62", "Output on with the motion", partial(digital, "SET_MOTION_OUTPUT_BIT"), takes="p", needs="p"),
-    io("M63", "Output off with the motion", partial(digital, "CLEAR_MOTION_OUTPUT_BIT"), takes="p", needs="p"),
-    io("M64", "Output on", partial(digital, "SET_AUX_OUTPUT_BIT"), takes="p", needs="p"),
-    io("M65", "Output off", partial(digital, "CLEAR_AUX_OUTPUT_BIT"), takes="p", needs="p"),
+    io("M62", "Output on with the motion", partial(digital, "SET_MOTION_OUTPUT_BIT"), takes="p"),
+    io("M63", "Output off with the motion", partial(digital, "CLEAR_MOTION_OUTPUT_BIT"), takes="p"),
+    io("M64", "Output on", partial(digital, "SET_AUX_OUTPUT_BIT"), takes="p"),
+    io("M65", "Output off", partial(digital, "CLEAR_AUX_OUTPUT_BIT"), takes="p"),
     io("M66", "Wait for an input", wait, takes="pelq"),
-    io("M67", "Analog output with the motion", partial(analog, "SET_MOTION_OUTPUT_VALUE"), takes="eq", needs="e"),
-    io("M68", "Analog output", partial(analog, "SET_AUX_OUTPUT_VALUE"), takes="eq", needs="e"),
+    io("M67", "Analog output with the motion", partial(analog, "SET_MOTION_OUTPUT_VALUE"), takes="eq"),
+    io("M68", "Analog output", partial(analog, "SET_AUX_OUTPUT_VALUE"), takes="eq"),
 )

@@ -20,19 +20,25 @@ SYSTEM_CODES = ("g54", "g55", "g56", "g57", "g58", "g59", "g59.1", "g59.2", "g59
 
 
 class Saved(NamedTuple):
-    """The modes of a moment, each as the code that brings it back."""
+    """The modes of a moment, as the codes that bring them back."""
 
     units: str
     modes: dict[str, str]
+    blending: tuple[float, float]  # P and Q of G64, program units
     feed: float
     speed: float
-    switches: dict[str, tuple[str, float | None]]  # M codes, with P
+    on: dict[str, bool]
     returning: bool = False  # it comes back by itself when the subroutine returns
+
+
+#: Switches, and the code that brings each back where it was on.
+SWITCHES = {"mist": "m7", "flood": "m8", "adaptive": "m52", "hold": "m53"}
 
 
 def snapshot(m: State, returning: bool = False) -> Saved:
     """The modes now."""
     modes = {
+        "spindle": f"m{m.spindle}",
         "plane": f"g{m.plane_code // 10}" + (".1" if m.plane_code % 10 else ""),
         "cutter": f"g{m.cutter or 40}",
         "distance": "g90" if m.absolute else "g91",
@@ -45,17 +51,9 @@ def snapshot(m: State, returning: bool = False) -> Saved:
         "shift": "g92.3" if m.numbered[G92] else "g92.2",
         "path": {61: "g61", 611: "g61.1", 64: "g64"}[m.path_mode],
     }
-    switches: dict[str, tuple[str, float | None]] = {
-        "spindle": (f"m{m.spindle}", None),
-        "mist": ("m7" if m.mist else "", None),
-        "flood": ("m8" if m.flood else "", None),
-        "coolant": ("m9" if not (m.mist or m.flood) else "", None),
-        "feed override": ("m50", float(m.feed_override)),
-        "speed override": ("m51", float(m.speed_override)),
-        "adaptive": ("m52", float(m.adaptive)),
-        "hold": ("m53", float(m.hold)),
-    }
-    return Saved("g21" if m.unit == 1.0 else "g20", modes, m.gave_feed, m.speed, switches, returning)
+    on = {"mist": m.mist, "flood": m.flood, "adaptive": m.adaptive, "hold": m.hold, "override": bool(m.feed_override)}
+    blending = (m.blend / m.unit, m.thinning / m.unit)
+    return Saved("g21" if m.unit == 1.0 else "g20", modes, blending, m.gave_feed, m.speed, on, returning)
 
 
 def save(returning: bool, m: State, w: Words) -> None:
@@ -96,12 +94,27 @@ def bring_back(run: Interpreter, saved: Saved) -> None:
         words["f"] = round(saved.feed, 1)
     if now.speed != saved.speed:
         words["s"] = float(round(saved.speed))
+    if saved.modes["path"] == "g64" and ("g64" in names or now.blending != saved.blending):
+        names = [*dict.fromkeys((*names, "g64"))]
+        words["p"], words["q"] = saved.blending
     if names or words:
         run.carry_out(names, words)
-    for switch, (name, p) in saved.switches.items():
-        if name and now.switches[switch] != (name, p):
-            run.carry_out([name], {} if p is None else {"p": p})
+    for name in switches(saved, now):
+        run.carry_out([name], {})
     m.out.line = line
+
+
+def switches(saved: Saved, now: Saved) -> list[str]:
+    """What was on comes on again; what was off stays as it is, but for coolants of which both were off.
+
+    The overrides follow the feed's alone, as LinuxCNC does it: M51 where it was off.
+    """
+    names = [code for switch, code in SWITCHES.items() if saved.on[switch] and not now.on[switch]]
+    if not (saved.on["mist"] or saved.on["flood"]) and (now.on["mist"] or now.on["flood"]):
+        names.insert(0, "m9")
+    if saved.on["override"] != now.on["override"]:
+        names.insert(sum(name in ("m7", "m8", "m9") for name in names), "m48" if saved.on["override"] else "m51")
+    return names
 
 
 saving = partial(Code, group=Group.SPINDLE, order=Order.SPINDLE)

@@ -20,6 +20,7 @@ def begin(m: State) -> None:
     if m.numbered[G92] != 0.0:
         m.set_shift(m.stored(G92 + 1))
     m.position = m.to_program([0.0] * 9)
+    m.told = m.position[:]
     m.out.event("USE_LENGTH_UNITS", "MM")
     tell_system(m)
     tell_shift(m)

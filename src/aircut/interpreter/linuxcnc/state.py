@@ -49,7 +49,9 @@ class State(house.State):
         self.rotation = 0.0  # degrees
         self.shift = [0.0] * 9  # G92 and G52
         self.tool_offset = [0.0] * 9
-        self.reached = [0.0] * 9  # end of the last printed move, machine coordinates without the tool
+        #: End of the last printed move. It follows changes of offsets, but neither rotations nor tool lengths:
+        #: so LinuxCNC's stand-alone interpreter remembers it.
+        self.told = [0.0] * 9
         self.stale = False  # the position is taken from there before the next block
         self.slots: list[Tool] = [EMPTY, *machine.tools.values()]  # slot 0 is the spindle
         self.slot = 1  # of the tool in the spindle, before any change
@@ -79,7 +81,6 @@ class State(house.State):
         self.sticky: dict[str, float] = {}  # words that a cycle remembers
         self.cycle_height: float | None = None  # where the first cycle began
         self.finished = False
-        self.plane_before = 170  # before this block
         self.saved: Any = None  # by M70 at this level of calls
 
     # --- position
@@ -112,13 +113,16 @@ class State(house.State):
         """Take origin and rotation of the active system from the parameters; the machine stays."""
         first = ORIGINS + STEP * self.system
         here = self.to_space(self.position)
+        before = self.origin
         self.origin = self.stored(first)
         self.rotation = self.numbered[first + 9]
         self.position = self.to_program(here)
+        self.told = [t + b - n for t, b, n in zip(self.told, before, self.origin, strict=True)]
 
     def set_shift(self, shift: list[float]) -> None:
         """Put G92's offset in force; the machine stays."""
         here = self.to_space(self.position)
+        self.told = [t + b - n for t, b, n in zip(self.told, self.shift, shift, strict=True)]
         self.shift = shift
         self.position = self.to_program(here)
 

@@ -51,6 +51,8 @@ def load(m: State, slot: int) -> None:
 
 def declare(m: State, w: Words) -> None:
     """M61: the tool Q is in the spindle. Raises Refusal."""
+    if "q" not in w:
+        raise Refusal(F.MISSING_WORD, code="M61", word="Q", meaning="the tool's number")
     number = round(w["q"])
     if abs(w["q"] - number) > EQUAL or number < 0:
         raise Refusal(F.BAD_VALUE, "q", word="Q", value=w["q"], wanted="a tool's number")
@@ -122,7 +124,7 @@ length = partial(Code, group=Group.TOOL_LENGTH, order=Order.TOOL_LENGTH)
 
 CODES = (
     Code("M6", "Change the tool", change, Group.TOOL, Order.TOOL_CHANGE),
-    Code("M61", "Declare the tool", declare, Group.TOOL, Order.TOOL_CHANGE, takes="q", needs="q"),
+    Code("M61", "Declare the tool", declare, Group.TOOL, Order.TOOL_CHANGE, takes="q"),
     length("G43", "Tool length", tool_length, takes="h"),
     length("G43.1", "Tool length as given", dynamic_length, axes=True),
     length("G43.2", "Tool length added", added_length, axes=True, takes="h"),
