@@ -22,6 +22,12 @@ class Do(Enum):
     STOP_SPINDLE = auto()
     START_SPINDLE = auto()
     PAUSE = auto()
+    # LinuxCNC's own
+    REVERSE_SPINDLE = auto()
+    ORIENT = auto()
+    ASIDE = auto()  # 1: beside the hole's axis, 0: back on it
+    OVERRIDES_OFF = auto()
+    OVERRIDES_ON = auto()
 
 
 class Hole(NamedTuple):
@@ -33,6 +39,7 @@ class Hole(NamedTuple):
     dwell: float  # seconds
     bite: float
     gap: float  # way back to break a chip, and kept from what is left to cut
+    middle: float = 0.0  # of back boring: up to where
 
 
 Step = tuple[Do, float]

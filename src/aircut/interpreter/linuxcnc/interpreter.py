@@ -23,7 +23,7 @@ from aircut.interpreter.linuxcnc.state import State
 from aircut.interpreter.linuxcnc.text import check, clean
 from aircut.interpreter.requests import Request
 from aircut.interpreter.running import Run, Settings, Stopped
-from aircut.interpreter.table import Dialect
+from aircut.interpreter.table import Dialect, Group
 from aircut.machine import Machine
 from aircut.source import Source
 
@@ -241,6 +241,8 @@ class Interpreter(Run):
             if row.modal:
                 self.modal = row
                 m.motion_name = row.name.lower()
+            if row.group is Group.MOTION and not row.cycle:
+                m.cycle = None
             row.run(m, words)
         if m.transfer is not None:
             transfer, m.transfer = m.transfer, None

@@ -5,7 +5,7 @@ Sources: 001; the canonical listing.
 
 from __future__ import annotations
 
-from aircut.interpreter.linuxcnc import calls, compensation, modes, motion, offsets, outputs, saving, tooling
+from aircut.interpreter.linuxcnc import calls, compensation, cycles, modes, motion, offsets, outputs, saving, tooling
 from aircut.interpreter.linuxcnc.interpreter import Interpreter
 from aircut.interpreter.linuxcnc.named import NAMED
 from aircut.interpreter.state import INCH
@@ -21,6 +21,7 @@ CODES = (
     *saving.CODES,
     *compensation.CODES,
     *calls.CODES,
+    *cycles.CODES,
 )
 
 

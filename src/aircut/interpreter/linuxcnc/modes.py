@@ -125,9 +125,11 @@ def set_plane(code: int, m: State, w: Words) -> None:
 def set_units(unit: float, m: State, w: Words) -> None:
     """G20, G21: lengths are kept in mm, so nothing is turned.
 
-    But the tool's offset keeps its number, not its length: LinuxCNC forgets to turn it.
+    But the tool's offset and G64's tolerances keep their numbers, not their lengths: LinuxCNC forgets to turn them.
     """
     ratio = unit / m.unit
+    m.blend *= ratio
+    m.thinning *= ratio
     m.tool_offset = [t * ratio if i in LINEAR else t for i, t in enumerate(m.tool_offset)]
     m.unit = unit
     m.out.event("USE_LENGTH_UNITS", "MM" if unit == 1.0 else "INCHES")

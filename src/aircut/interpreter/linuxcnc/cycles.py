@@ -1,0 +1,259 @@
+"""Canned cycles of LinuxCNC's language: those of the house, tapping and back boring, and how they are led.
+
+Words and heights are numbers of the program and stay so through a change of units.
+Source: the canonical listing, section 13.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import NamedTuple
+
+from aircut.canon import BY_HAND, EXACT_PATH
+from aircut.diagnostics import Refusal
+from aircut.diagnostics import faults as F
+from aircut.geometry.arcs import PLANE_AXES
+from aircut.interpreter.cycles import (
+    DEPTH,
+    STARTS,
+    Do,
+    Hole,
+    Step,
+    Steps,
+    Sticky,
+    bore,
+    bore_and_dwell,
+    bore_and_stop,
+    bore_manual_out,
+    break_chips,
+    clear_chips,
+    drill,
+    drill_and_dwell,
+)
+from aircut.interpreter.linuxcnc.modes import tell_blending
+from aircut.interpreter.linuxcnc.motion import CENTER_WORDS, FEED, TRAVERSE, go, goal, wrong
+from aircut.interpreter.linuxcnc.state import NINE, State
+from aircut.interpreter.state import INCH
+from aircut.interpreter.table import Code, Group, Order, Words
+
+CHIP_GAP = {1.0: 0.254, INCH: 0.01}  # program units
+STANDING = 5
+OTHER_WAY = {3: 4, 4: 3}
+ORIENTATION = {3: 2, 4: 3}  # mode of ORIENT_SPINDLE by the way the spindle turned
+MOST = 1_000_000  # bites of one block
+
+
+class Cycle(NamedTuple):
+    """One cycle."""
+
+    name: str
+    title: str
+    steps: Steps
+    needs: str = ""  # words beside R and the depth
+    takes: str = "l"
+    turning: tuple[int, ...] = ()  # ways in which the spindle must turn
+
+
+def tap(hole: Hole) -> Iterator[Step]:
+    """G74, G84: down, and up with the spindle turning the other way; nobody may override the feed."""
+    yield Do.OVERRIDES_OFF, 0.0
+    yield Do.FEED, hole.bottom
+    yield Do.STOP_SPINDLE, 0.0
+    yield Do.REVERSE_SPINDLE, 0.0
+    yield Do.DWELL, hole.dwell
+    yield Do.FEED, hole.clear
+    yield Do.STOP_SPINDLE, 0.0
+    yield Do.START_SPINDLE, 0.0
+    yield Do.OVERRIDES_ON, 0.0
+
+
+def bore_back(hole: Hole) -> Iterator[Step]:
+    """G87: through the hole beside its axis, then up at feed, and back the same way."""
+    yield Do.ASIDE, 1.0
+    yield Do.STOP_SPINDLE, 0.0
+    yield Do.ORIENT, 0.0
+    yield Do.RAPID, hole.bottom
+    yield Do.ASIDE, 0.0
+    yield Do.START_SPINDLE, 0.0
+    yield Do.FEED, hole.middle
+    yield Do.FEED, hole.bottom
+    yield Do.STOP_SPINDLE, 0.0
+    yield Do.ORIENT, 0.0
+    yield Do.ASIDE, 1.0
+    yield Do.RAPID, hole.clear
+    yield Do.ASIDE, 0.0
+    yield Do.START_SPINDLE, 0.0
+
+
+def run(cycle: Cycle, m: State, w: Words) -> None:
+    """Run a cycle at each of its places. Raises Refusal before anything has moved."""
+    normal = PLANE_AXES[m.plane][2]
+    check(cycle, m, w)
+    sticky = remember(cycle, normal, m, w)
+    hole = measure(sticky, normal, m)
+    repeats = int(w.get("l", 1.0))
+    if repeats < 1:
+        raise Refusal(F.BAD_VALUE, "l", word="L", value=repeats, wanted="how often, from 1")
+    if repeats * (hole.top - hole.bottom) > MOST * (hole.bite or 1e9):
+        raise Refusal(F.BAD_VALUE, "q", word="Q", value=hole.bite, wanted="so many bites are a mistake")
+    m.cycle = sticky
+    drive(cycle, hole, sticky, repeats, m, w)
+
+
+def check(cycle: Cycle, m: State, w: Words) -> None:
+    """Refuse a cycle that the modes or words forbid."""
+    if m.plane_code % 10:
+        raise wrong(f"{cycle.name} needs a plane of X, Y and Z")
+    if m.feed_mode == 93:
+        raise Refusal(F.CYCLE_INVERSE_TIME, code=cycle.name)
+    if m.gave_feed <= 0.0:
+        raise Refusal(F.MISSING_FEED)
+    if m.cutter:
+        raise Refusal(F.CYCLE_COMPENSATION, code=cycle.name)
+
+
+def check_words(cycle: Cycle, m: State, w: Words) -> None:
+    """Raises Refusal."""
+    for letter in "abc":
+        if letter in w:
+            raise Refusal(F.CYCLE_ROTARY, letter, code=cycle.name, axis=letter.upper())
+
+
+def remember(cycle: Cycle, normal: int, m: State, w: Words) -> Sticky:
+    """The words in force, those of this block included. Raises Refusal where one is missing."""
+    axis = NINE[normal]
+    before = m.cycle
+    words = m.sticky
+    again = before is not None and before.name == cycle.name
+    words |= {letter: w[letter] for letter in "rpqijk" if letter in w}
+    if axis in w:
+        words[DEPTH] = m.axis(w, normal) / m.unit
+    for letter in (DEPTH, "r", *cycle.needs):
+        if not again and letter not in w and not (letter == DEPTH and axis in w):
+            raise Refusal(
+                F.MISSING_WORD, code=cycle.name, word=(axis if letter == DEPTH else letter).upper(), meaning=""
+            )
+    level = m.position[normal] / m.unit if before is None else before.level
+    return Sticky(cycle.name, level, dict(words))
+
+
+def measure(sticky: Sticky, normal: int, m: State) -> Hole:
+    """The hole that the words in force mean. Raises Refusal."""
+    words = sticky.words
+    top, bottom = words["r"], words[DEPTH]
+    middle = words.get(CENTER_WORDS[normal], 0.0)
+    if not m.absolute:
+        top += sticky.level
+        bottom += top
+        middle += bottom
+    if top < bottom:
+        raise Refusal(F.CYCLE_BELOW, "r", code=sticky.name, r=top, bottom=bottom, axis=NINE[normal].upper())
+    bite = words.get("q", 0.0)
+    if "q" in words and bite <= 0.0:
+        raise Refusal(F.BAD_VALUE, "q", word="Q", value=bite, wanted="the depth of a bite is above zero")
+    clear = max(top, sticky.level) if m.retract == 98 else top
+    return Hole(clear, top, bottom, words.get("p", 0.0), bite, CHIP_GAP[m.unit], middle)
+
+
+def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, m: State, w: Words) -> None:
+    """Move: to each place, down to R, and the steps there."""
+    u, v, normal = PLANE_AXES[m.plane]
+    across = {letter: value for letter, value in w.items() if letter != NINE[normal]}
+    height = m.position[normal] / m.unit
+    if sticky.level < hole.top:
+        to_height(m, TRAVERSE, hole.top)
+        height = hole.top
+        hole = hole._replace(clear=hole.top)
+    if m.path_mode != 61:
+        m.out.event("SET_MOTION_CONTROL_MODE", "EXACT_PATH")
+    flags, m.flags = m.flags, EXACT_PATH
+    for at in range(repeats):
+        if at or height <= hole.top:
+            height = hole.clear
+        place = goal(m, across)
+        place[normal] = height * m.unit
+        go(m, TRAVERSE, place)
+        if height > hole.top:
+            to_height(m, TRAVERSE, hole.top)
+        if cycle.turning and m.spindle not in cycle.turning:
+            raise Refusal(F.CYCLE_SPINDLE, code=cycle.name)
+        center = m.position[u], m.position[v]
+        aside = [sticky.words.get(CENTER_WORDS[i], 0.0) * m.unit for i in (u, v)]
+        overridden = m.feed_override, m.speed_override
+        for do, value in cycle.steps(hole):
+            match do:
+                case Do.RAPID:
+                    to_height(m, TRAVERSE, value)
+                case Do.FEED:
+                    to_height(m, FEED, value)
+                case Do.BY_HAND:
+                    by_hand(m, value)
+                case Do.ASIDE:
+                    place = m.position[:]
+                    place[u], place[v] = center[0] + value * aside[0], center[1] + value * aside[1]
+                    go(m, TRAVERSE, place)
+                case Do.DWELL:
+                    m.out.event("DWELL", value)
+                case Do.STOP_SPINDLE:
+                    m.out.event("STOP_SPINDLE_TURNING", 0)
+                case Do.START_SPINDLE:
+                    m.out.event(STARTS[m.spindle], 0)
+                case Do.REVERSE_SPINDLE:
+                    m.out.event(STARTS[OTHER_WAY[m.spindle]], 0)
+                case Do.ORIENT:
+                    m.out.event("ORIENT_SPINDLE", 0, 0.0, ORIENTATION[m.spindle])
+                case Do.PAUSE:
+                    m.out.event("PROGRAM_STOP")
+                case Do.OVERRIDES_OFF:
+                    m.out.event("DISABLE_FEED_OVERRIDE")
+                    m.out.event("DISABLE_SPEED_OVERRIDE", 0)
+                case Do.OVERRIDES_ON:
+                    if overridden[0]:
+                        m.out.event("ENABLE_FEED_OVERRIDE")
+                    if overridden[1]:
+                        m.out.event("ENABLE_SPEED_OVERRIDE", 0)
+    m.flags = flags
+    if m.path_mode == 611:
+        m.out.event("SET_MOTION_CONTROL_MODE", "EXACT_STOP")
+        m.out.event("SET_NAIVECAM_TOLERANCE", m.thinning)
+    elif m.path_mode == 64:
+        tell_blending(m)
+
+
+def by_hand(m: State, height: float) -> None:
+    """The operator leads the tool out: nothing is printed."""
+    told = m.told
+    m.flags |= BY_HAND
+    to_height(m, TRAVERSE, height)
+    m.flags &= ~BY_HAND
+    m.told = told
+
+
+def to_height(m: State, kind: int, height: float) -> None:
+    """Move along the tool's axis to a height, program units."""
+    place = m.position[:]
+    place[PLANE_AXES[m.plane][2]] = height * m.unit
+    speed = m.gave_feed * m.unit * (m.speed if m.feed_mode == 95 else 1.0)
+    go(m, kind, place, speed if kind == FEED else 0.0)
+
+
+CYCLES = (
+    Cycle("G73", "Drill, breaking chips", break_chips, "q"),
+    Cycle("G74", "Tap left-handed", tap, "", "p", turning=(4,)),
+    Cycle("G81", "Drill", drill),
+    Cycle("G82", "Drill and dwell", drill_and_dwell, "p"),
+    Cycle("G83", "Drill, clearing chips", clear_chips, "q"),
+    Cycle("G84", "Tap right-handed", tap, "", "pl", turning=(3,)),
+    Cycle("G85", "Bore, feed out", bore),
+    Cycle("G86", "Bore, spindle stop, rapid out", bore_and_stop, "p", turning=(3, 4)),
+    Cycle("G87", "Back bore", bore_back, "ijk", turning=(3, 4)),
+    Cycle("G88", "Bore, spindle stop, manual out", bore_manual_out, "p", turning=(3, 4)),
+    Cycle("G89", "Bore, dwell, feed out", bore_and_dwell, "p"),
+)
+
+CODES = tuple(
+    Code(cycle.name, cycle.title, partial(run, cycle), Group.MOTION, Order.MOTION,
+         takes="r" + cycle.needs + cycle.takes, axes=True, needs_axes=True, modal=True, cycle=True)
+    for cycle in CYCLES
+)  # fmt: skip
