@@ -254,6 +254,7 @@ CYCLES = (
 
 CODES = tuple(
     Code(cycle.name, cycle.title, partial(run, cycle), Group.MOTION, Order.MOTION,
-         takes="r" + cycle.needs + cycle.takes, axes=True, needs_axes=True, modal=True, cycle=True)
+         takes="r" + cycle.needs + cycle.takes, axes=True, needs_axes=True, modal=True, cycle=True,
+         check=partial(check_words, cycle))
     for cycle in CYCLES
 )  # fmt: skip
