@@ -114,6 +114,7 @@ class Code(NamedTuple):
     axes: bool = False  # it takes the axis words
     needs_axes: bool = False  # and wants one at least
     modal: bool = False  # it stays in force: State.modal holds the row
+    nameless: bool = False  # after it no motion mode is in force
     weak: bool = False  # gives way to another code of its group in the block
     wakes: str = ""  # letters that make it run while modal, beside the axis words
     fits: tuple[str, ...] = ()  # motions that it may stand beside, if not all
@@ -122,6 +123,7 @@ class Code(NamedTuple):
     sole: bool = False  # the only G or M code of its block; every letter is its argument
     check: Handler | None = None  # finds faults of form in the values of the words
     counts: str = ""  # letters of words that must be whole numbers
+    least: int = -1000  # and at least this
     text: bool = False  # its P may be a string
     supported: bool = True  # False: run raises not-supported-yet
 

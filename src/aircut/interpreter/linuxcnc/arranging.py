@@ -42,7 +42,7 @@ def check_values(m: State, codes: Sequence[Code], words: Mapping[str, float]) ->
                 value = words[letter]
                 if abs(value - round(value) if abs(value) < 1e9 else 1.0) > TURNS:
                     raise Refusal(F.NOT_INTEGER, letter, word=letter.upper(), value=value)
-                if row.wakes and round(value) < 1:
+                if round(value) < row.least:
                     raise Refusal(F.BAD_VALUE, letter, word=letter.upper(), value=value, wanted="1 at least")
 
 

@@ -15,13 +15,10 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.geometry.arcs import PLANE_AXES
 from aircut.interpreter.cycles import (
-    DEPTH,
-    STARTS,
     Do,
     Hole,
     Step,
     Steps,
-    Sticky,
     bore,
     bore_and_dwell,
     bore_and_stop,
@@ -31,6 +28,7 @@ from aircut.interpreter.cycles import (
     drill,
     drill_and_dwell,
 )
+from aircut.interpreter.drilling import DEPTH, STARTS, Sticky
 from aircut.interpreter.linuxcnc.modes import tell_blending
 from aircut.interpreter.linuxcnc.motion import CENTER_WORDS, FEED, TRAVERSE, go, goal, wrong
 from aircut.interpreter.linuxcnc.state import NINE, State

@@ -238,7 +238,10 @@ class Interpreter(Run):
         m.machine_frame = False
         m.changed = None
         for row in steps.codes:
-            if row.modal:
+            if row.nameless:
+                self.modal = self.dialect.codes["g80"]
+                m.motion_name = "g80"
+            elif row.modal:
                 self.modal = row
                 m.motion_name = row.name.lower()
             if row.group is Group.MOTION and not row.cycle:

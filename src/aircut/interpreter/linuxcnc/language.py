@@ -5,7 +5,18 @@ Sources: 001; the canonical listing.
 
 from __future__ import annotations
 
-from aircut.interpreter.linuxcnc import calls, compensation, cycles, modes, motion, offsets, outputs, saving, tooling
+from aircut.interpreter.linuxcnc import (
+    calls,
+    compensation,
+    cycles,
+    modes,
+    motion,
+    offsets,
+    outputs,
+    saving,
+    splines,
+    tooling,
+)
 from aircut.interpreter.linuxcnc.interpreter import Interpreter
 from aircut.interpreter.linuxcnc.named import NAMED
 from aircut.interpreter.state import INCH
@@ -22,6 +33,7 @@ CODES = (
     *compensation.CODES,
     *calls.CODES,
     *cycles.CODES,
+    *splines.CODES,
 )
 
 

@@ -1,0 +1,114 @@
+"""Splines of LinuxCNC's language: G5, G5.1, and G5.2 with G5.3.
+
+The listing has a spline as one command; the toolpath has its points, as feeds.
+Source: the canonical listing, section 11.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+from aircut.canon import TOLD
+from aircut.diagnostics import Refusal
+from aircut.diagnostics import faults as F
+from aircut.geometry.splines import Point, bezier, nurbs
+from aircut.interpreter.linuxcnc.motion import FEED, check_feed, go, goal, wrong
+from aircut.interpreter.linuxcnc.state import State
+from aircut.interpreter.table import Code, Group, Order, Words
+
+LEAST_ORDER = 3
+
+
+def check(m: State, w: Words) -> None:
+    """What all splines need. Raises Refusal."""
+    if m.plane_code != 170:
+        raise wrong("splines need G17")
+    if any(letter in w for letter in "zabcuvw"):
+        raise wrong("splines move X and Y alone")
+    check_feed(m, w)
+    if m.cutter:
+        raise Refusal(F.UNDER_COMPENSATION, what="a spline")
+
+
+def trace(m: State, count: int, points: Sequence[Point], end: list[float]) -> None:
+    """Tell a spline of so many control points, and write its moves."""
+    m.out.event("NURBS_FEED", count)
+    for x, y in points:
+        go(m, FEED, [x, y, *m.position[2:]], m.gave_feed * m.unit, m.flags | TOLD)
+    m.position = end
+    m.told = end[:]
+
+
+def cubic(m: State, w: Words) -> None:
+    """G5: I J from the start, P Q from the end; without I J, the P Q before turned round. Raises Refusal."""
+    check(m, w)
+    if "p" not in w or "q" not in w:
+        raise Refusal(F.MISSING_WORD, code="G5", word="P and Q", meaning="")
+    if ("i" in w) != ("j" in w):
+        raise Refusal(F.MISSING_WORD, code="G5", word="I and J, or neither,", meaning="")
+    start = m.position
+    end = goal(m, w)
+    leave = (m.length(w, "i"), m.length(w, "j"))
+    if "i" not in w:
+        before = m.spline_end or (0.0, 0.0)
+        leave = (-before[0], -before[1])
+    m.spline_end = (m.length(w, "p"), m.length(w, "q"))
+    points = [
+        (start[0], start[1]),
+        (start[0] + leave[0], start[1] + leave[1]),
+        (end[0] + m.spline_end[0], end[1] + m.spline_end[1]),
+        (end[0], end[1]),
+    ]
+    trace(m, len(points), bezier(points), end)
+
+
+def quadratic(m: State, w: Words) -> None:
+    """G5.1: I J from the start. Raises Refusal."""
+    check(m, w)
+    if "i" not in w or "j" not in w:
+        raise Refusal(F.MISSING_WORD, code="G5.1", word="I and J", meaning="")
+    start = m.position
+    end = goal(m, w)
+    points = [(start[0], start[1]), (start[0] + m.length(w, "i"), start[1] + m.length(w, "j")), (end[0], end[1])]
+    trace(m, len(points), bezier(points), end)
+
+
+def collect(m: State, w: Words) -> None:
+    """G5.2: a control point and its weight. Raises Refusal."""
+    check(m, w)
+    named = "x" in w or "y" in w
+    if named and not ("x" in w and "y" in w):
+        raise wrong("a control point needs X and Y")
+    if "p" in w and w["p"] <= 0.0:
+        raise Refusal(F.BAD_VALUE, "p", word="P", value=w["p"], wanted="a weight above zero")
+    if named and "p" not in w:
+        raise Refusal(F.MISSING_WORD, code="G5.2", word="P", meaning="the weight of the control point")
+    if not m.spline:
+        m.spline_order = max(LEAST_ORDER, int(w.get("l", LEAST_ORDER)))
+        m.spline = [(m.position[0], m.position[1], 1.0 if named else w.get("p", 1.0))]
+        if not named:
+            return
+    place = goal(m, w)
+    m.spline.append((place[0], place[1], w.get("p", 1.0)))
+
+
+def run_collected(m: State, w: Words) -> None:
+    """G5.3: the spline of the points collected. Raises Refusal."""
+    if not m.spline:
+        raise wrong("G5.3 without G5.2 before")
+    if len(m.spline) < m.spline_order:
+        raise wrong(f"a spline of order {m.spline_order} needs as many points; there are {len(m.spline)}")
+    points, m.spline = m.spline, []
+    end = [points[-1][0], points[-1][1], *m.position[2:]]
+    trace(m, len(points), nurbs(points, m.spline_order), end)
+
+
+spline = partial(Code, group=Group.MOTION, order=Order.MOTION, axes=True)
+
+CODES = (
+    spline("G5", "Cubic spline", cubic, takes="ijpq", needs_axes=True),
+    spline("G5.1", "Quadratic spline", quadratic, takes="ij", needs_axes=True),
+    spline("G5.2", "Control point of a spline", collect, takes="pl", modal=True, wakes="p"),
+    Code("G5.3", "Run the spline", run_collected, Group.MOTION, Order.NON_MODAL, nameless=True),
+)
