@@ -17,6 +17,7 @@ from aircut import __version__
 FORMATS = ("summary", "canon", "json")
 TIME_FORMATS = ("table", "json", "csv")
 CHECK_FORMATS = ("text", "json", "sarif", "github", "vendor")
+CURVES = ("path", "speed", "acceleration", "jerk", "axis")
 PICTURES = (".png", ".svg", ".html")
 
 FILE = click.Path(path_type=Path)
@@ -144,14 +145,25 @@ def time(file: Path, style: str, lines: int, output: Path | None, **options: Any
 @cli.command()
 @click.argument("file", type=FILE)
 @machine_options
+@world_options
+@planner_options
+@click.option(
+    "--what",
+    type=click.Choice(CURVES),
+    default="path",
+    show_default=True,
+    help="The path, or over time: the tool's speed, or of each axis acceleration, jerk or position.",
+)
 @click.option("-o", "--output", type=FILE, required=True, metavar="OUT.png|.svg|.html", help="The picture.")
-def plot(file: Path, output: Path, **options: Any) -> None:
-    """Draw the toolpath: a still picture, or a page with a 3D view."""
+def plot(file: Path, output: Path, what: str, **options: Any) -> None:
+    """Draw the toolpath: a still picture, or a page with a 3D view; or curves of its motion over time."""
+    if what != "path" and output.suffix.lower() == ".html":
+        raise click.UsageError("curves are drawn as .png or .svg")
     if output.suffix.lower() not in PICTURES:
         raise click.UsageError(f"cannot draw {output.suffix or output}: give a file ending in {', '.join(PICTURES)}")
     from aircut.cli import plotting
 
-    sys.exit(plotting.plot(file, output, options))
+    sys.exit(plotting.plot(file, output, what, options))
 
 
 @cli.command("mdi")

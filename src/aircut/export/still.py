@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from aircut.planner import Plan
+
 INK, SOFT, GRID = "#1d2530", "#5f6c7b", "#dde3ea"
 FEED, RAPID, PROBE, CONTOUR = "#0b62c4", "#d9660a", "#a328c9", "#a08a00"
 TOOL = "#16867a"
@@ -71,6 +73,7 @@ class Path(NamedTuple):
     origins: list[tuple[str, NDArray[np.float64]]]
     what: str  # of which moves the box is, as a word before the numbers
     contour: NDArray[np.float64]  # (k, 3) mm, what compensation led the tool beside; NaN between stretches
+    corners: NDArray[np.float64] | None = None  # (k, 3) mm, programmed, where the points are of the blended path
 
     @property
     def points(self) -> NDArray[np.float64]:
@@ -121,14 +124,19 @@ def millimeters(value: float) -> str:
     return f"{round(value, 3) + 0.0:.3f}".rstrip("0").rstrip(".")
 
 
-def gather(recording: Recording) -> Path | None:
-    """The path and its surroundings; None without moves."""
+def gather(recording: Recording, plan: Plan | None = None) -> Path | None:
+    """The path and its surroundings; None without moves. plan: to show blended corners as they are followed."""
     import numpy as np
 
     toolpath = recording.toolpath
     if not len(toolpath):
         return None
     shown = seen(toolpath, SPARE, TOOLS)
+    programmed = None
+    if plan is not None and plan.blends and not shown.part:
+        programmed = shown.points
+        points, move = plan.polyline()
+        shown = shown._replace(points=finite(points[:, :3]), move=move)
     kinds = toolpath.kind[np.maximum(shown.move, 0)]
     found = frames(recording)
     zeros: list[tuple[str, NDArray[np.float64]]] = []
@@ -149,8 +157,8 @@ def gather(recording: Recording) -> Path | None:
     if cut is not None:
         least, most = np.array(cut)
         if 0 < np.linalg.norm(most - least) < np.linalg.norm(high - low) / 2.5:
-            return Path(shown, kinds, least, most, zeros, "cut ", beside)
-    return Path(shown, kinds, low, high, zeros, "", beside)
+            return Path(shown, kinds, least, most, zeros, "cut ", beside, programmed)
+    return Path(shown, kinds, low, high, zeros, "", beside, programmed)
 
 
 def zero(frame: Frame) -> NDArray[np.float64]:
@@ -190,6 +198,9 @@ def show(axes: Axes, path: Path, view: View, pixels: tuple[float, float]) -> Non
         contour = turned(view, path.contour)
         axes.plot(contour[:, 0], contour[:, 1], color=CONTOUR, linewidth=1.1, label="programmed", zorder=2.5)
     pixel = scale * 1.2  # the margins' share included
+    if path.corners is not None:
+        line = thinned(turned(view, path.corners), pixel / 2)
+        axes.plot(line[:, 0], line[:, 1], color=SOFT, linewidth=0.7, label="before blending", alpha=0.7, zorder=2.5)
     feeds = (path.kinds == Kind.FEED) | (path.kinds == Kind.ARC)
     feeds[0] = False
     if len(path.points) > MANY:
@@ -447,8 +458,11 @@ def draw(
     format: Literal["png", "svg"],
     title: str,
     size_px: tuple[int, int] = (1600, 1200),
+    plan: Plan | None = None,
 ) -> None:
     """Write a picture of a recording to a path or a binary file. size_px: width and height, pixels.
+
+    plan: where it blends corners, the path is drawn as followed, and the programmed one thin beside it.
 
     A path of more than 100,000 points is thinned to what the pixels can show and, in
     SVG too, drawn as pixels; axes and texts remain shapes.
@@ -460,7 +474,7 @@ def draw(
 
     figure = Figure(figsize=(size_px[0] / DPI, size_px[1] / DPI), dpi=DPI, facecolor="white")
     with rc_context({"agg.path.chunksize": 20_000, "svg.hashsalt": "aircut"}):  # the same picture, the same bytes
-        compose(figure, gather(recording), title, len(recording.toolpath))
+        compose(figure, gather(recording, plan), title, len(recording.toolpath))
         if format == "svg":
             FigureCanvasSVG(figure).print_svg(file, metadata={"Date": None, "Title": title})
         else:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aircut.canon.toolpath import AXES
 from aircut.planner import ramps
+from aircut.planner.path import FILLET
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -212,15 +213,27 @@ class Plan:
         accelerations = {f"a{axis}": s.acceleration[:, i] for i, axis in enumerate(AXES)}
         return pyarrow.table({"time": s.time, **axes, "speed": s.tool_speed, **speeds, **accelerations, "move": s.move})
 
-    def blended(self, spacing: float = 0.0, points: int = 9) -> Array:
-        """The path as followed, blends included, as points of X Y Z A B C, (m, 6).
+    @property
+    def blends(self) -> int:
+        """How many corners are blended."""
+        return int((self.path.shape >= FILLET).sum())
 
-        points: at which arcs and blends are cut, both ends included.
+    def polyline(self, turn: float = 0.1) -> tuple[Array, NDArray[np.int64]]:
+        """The path as followed, blends included: points of X Y Z A B C, (m, 6), and the move that each ends or lies on.
+
+        turn: radians, about, between two points of arcs and blends. The first point is the start, of move -1.
         """
         import numpy as np
 
-        count = np.where(self.path.shape == 0, 1, points - 1)
-        piece = np.repeat(np.arange(len(self.path)), count)
+        pieces = np.arange(len(self.path))
+        if not len(pieces):
+            return np.array([self.toolpath.start], float), np.array([-1])
+        _, _, bend = self.path.at(pieces, self.path.length / 2)
+        bend = np.sqrt((bend**2).sum(axis=1)) * self.path.length
+        count = np.clip(np.ceil(bend / turn), 1, 1000).astype(np.int64)
+        piece = np.repeat(pieces, count)
         nth = np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count) + 1
         place, _, _ = self.path.at(piece, self.path.length[piece] * nth / count[piece])
-        return np.vstack([np.asarray(self.toolpath.start, float), place])
+        move = self.path.move[piece].astype(np.int64)
+        move = move if self.rows is None else self.rows[move]
+        return np.vstack([np.asarray(self.toolpath.start, float), place]), np.concatenate([[-1], move])
