@@ -132,9 +132,9 @@ def gather(recording: Recording, plan: Plan | None = None) -> Path | None:
     if not len(toolpath):
         return None
     shown = seen(toolpath, SPARE, TOOLS)
-    programmed = None
+    corners = None
     if plan is not None and plan.blends and not shown.part:
-        programmed = shown.points
+        corners = shown.points
         points, move = plan.polyline()
         shown = shown._replace(points=finite(points[:, :3]), move=move)
     kinds = toolpath.kind[np.maximum(shown.move, 0)]
@@ -157,8 +157,8 @@ def gather(recording: Recording, plan: Plan | None = None) -> Path | None:
     if cut is not None:
         least, most = np.array(cut)
         if 0 < np.linalg.norm(most - least) < np.linalg.norm(high - low) / 2.5:
-            return Path(shown, kinds, least, most, zeros, "cut ", beside, programmed)
-    return Path(shown, kinds, low, high, zeros, "", beside, programmed)
+            return Path(shown, kinds, least, most, zeros, "cut ", beside, corners)
+    return Path(shown, kinds, low, high, zeros, "", beside, corners)
 
 
 def zero(frame: Frame) -> NDArray[np.float64]:
