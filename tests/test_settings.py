@@ -1,5 +1,6 @@
 """What the machine's settings and files do to programs, and codes that only tell the PLC something."""
 
+import re
 from pathlib import Path
 
 import msgspec
@@ -7,7 +8,9 @@ import pytest
 from click.testing import CliRunner
 
 import aircut
+from aircut import dialects
 from aircut.cli.main import cli
+from aircut.interpreter.running import Mode, Start
 from aircut.machine import built_in
 
 
@@ -71,3 +74,24 @@ def test_homing_is_requested_by_bits() -> None:
     ]
     result = aircut.loads("G0 X5\nG102 P13\n#500=#5001\nM2\n").run(built_in("XYZA"))
     assert result.system(500) == 5.0 and len(result.toolpath) == 1
+
+
+def test_the_place_of_a_stop_reads_in_the_units_in_force() -> None:
+    program = aircut.loads("G0 X25.4 Y-50.8 A90\nG20\nG4 P0\n#10=#5091 #11=#5092 #12=#5094 #13=#5081 #14=#5106\nM2\n")
+    stopped = program.run(built_in("XYZA"), stop_line=4)
+    assert stopped.stop is not None
+    rest = program.run(built_in("XYZA"), start=Start(4, stopped.stop.moves, stopped.stop), mode=Mode.RESUME)
+    assert [rest.variables[number] for number in range(10, 15)] == pytest.approx([1.0, -2.0, 90.0, 1.0, 20.0])
+
+
+def listed() -> list[int]:
+    """The system variables that the requirements name."""
+    table = Path(__file__).parent.parent / "conformance" / "coverage.tsv"
+    spans = re.findall(r"^VAR-(5\d{3})(?:\.\.(5\d{3}))?\t", table.read_text("utf-8"), re.MULTILINE)
+    return [number for first, last in spans if first != "5000" for number in range(int(first), int(last or first) + 1)]
+
+
+def test_every_listed_system_variable_has_a_meaning() -> None:
+    rows = dialects.load("rosetta").system
+    assert len(listed()) > 200
+    assert [n for n in listed() if not any(row.first <= n <= row.last for row in rows)] == []
