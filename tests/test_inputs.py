@@ -17,7 +17,8 @@ def test_found_before(path: Path) -> None:
     if path.suffix == ".bin":
         inputs.one(data)
     else:
-        inputs.fit(data, "rosetta", inputs.machine(inputs.Choices(b"")))
+        for dialect in ("rosetta", "linuxcnc"):
+            inputs.fit(data, dialect, inputs.machine(inputs.Choices(b"")))
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -202,7 +202,7 @@ class Interpreter(Run):
         """The compiled block of a line; lines that differ in literal numbers alone share it. Raises Refusal."""
         code = line.code
         check(code)
-        if "<" in code or "n" in code[:2]:
+        if "<" in code or "?" in code or "n" in code[:2]:
             line.block = parse(code)
             return line.block
         shape = LITERAL.sub("?", code)
