@@ -1,7 +1,9 @@
 """What the operator sees and answers: windows of M109 and M120, the HUD, pictures (000 section 10)."""
 
+import tomllib
 from pathlib import Path
 
+import msgspec
 import pytest
 from click.testing import CliRunner
 
@@ -146,3 +148,10 @@ def test_the_summary_tells_windows(tmp_path: Path) -> None:
     output = CliRunner().invoke(cli, ["run", str(program)]).output
     for line in ("message  go on  [Stop] [Resume]", "HUD      <B>hud</B>", "picture  a.png  [Resume]", "x  [Stop]"):
         assert line in output, output
+
+
+def test_the_world_of_the_reference_page_is_one() -> None:
+    page = (Path(__file__).parent.parent / "docs" / "reference" / "world.md").read_text("utf-8")
+    text = page.split("```toml\n")[1].split("```")[0]
+    file = msgspec.convert(tomllib.loads(text), File)
+    assert World(file).body is not None and file.operator == [Reply(values=[12.5])]
