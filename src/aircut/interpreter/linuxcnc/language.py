@@ -15,6 +15,7 @@ from aircut.interpreter.linuxcnc import (
     outputs,
     saving,
     splines,
+    threading,
     tooling,
 )
 from aircut.interpreter.linuxcnc.interpreter import Interpreter
@@ -34,6 +35,7 @@ CODES = (
     *calls.CODES,
     *cycles.CODES,
     *splines.CODES,
+    *threading.CODES,
 )
 
 

@@ -1,0 +1,172 @@
+"""Moves that follow the spindle, in LinuxCNC's language: G33, G33.1, and the threading cycle G76.
+
+Source: the canonical listing, section 13.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from math import hypot, radians, tan
+
+from aircut.canon import TOLD
+from aircut.diagnostics import Refusal
+from aircut.diagnostics import faults as F
+from aircut.interpreter.linuxcnc.motion import FEED, TRAVERSE, go, goal, wrong
+from aircut.interpreter.linuxcnc.state import State
+from aircut.interpreter.table import Code, Group, Order, Words
+
+STANDING = 5
+ENTRY, EXIT = 1, 2  # bits of G76's L
+
+
+def follows(m: State, w: Words, what: str) -> None:
+    """What all of them need. Raises Refusal."""
+    if m.spindle == STANDING:
+        raise wrong(f"{what} needs a turning spindle", "program S and M3")
+    if m.cutter:
+        raise Refusal(F.UNDER_COMPENSATION, what=what)
+
+
+def start(m: State, pitch: float) -> None:
+    m.out.event("START_SPEED_FEED_SYNC", pitch, 0)
+
+
+def stop(m: State) -> None:
+    m.out.event("STOP_SPEED_FEED_SYNCH")
+
+
+def check_synchronized(m: State, w: Words) -> None:
+    """Raises Refusal."""
+    if "f" in w:
+        raise Refusal(F.UNUSED_WORD, "f", word="F")
+
+
+def synchronized(m: State, w: Words) -> None:
+    """G33: K is the way for a turn of the spindle. Raises Refusal."""
+    follows(m, w, "G33")
+    pitch = m.length(w, "k")
+    start(m, pitch)
+    go(m, FEED, goal(m, w), abs(pitch) * m.speed)
+    stop(m)
+
+
+def rigid_tap(m: State, w: Words) -> None:
+    """G33.1: down and back, the spindle turning the other way; the position stays. Raises Refusal."""
+    follows(m, w, "G33.1")
+    place = goal(m, w)
+    pitch = m.length(w, "k")
+    here, told = m.position, m.told
+    start(m, pitch)
+    m.out.event("RIGID_TAP", *place[:3])
+    go(m, FEED, [*place[:3], *here[3:]], abs(pitch) * m.speed, m.flags | TOLD)
+    go(m, FEED, here, abs(pitch) * m.speed, m.flags | TOLD)
+    m.told = told
+    stop(m)
+
+
+def thread(m: State, w: Words) -> None:
+    """G76: passes along Z, each deeper than the one before. Raises Refusal."""
+    follows(m, w, "G76")
+    half = 2.0 if m.diameter else 1.0
+    pitch = m.length(w, "p")
+    peak, first, full = (m.length(w, letter) / half for letter in "ijk")
+    degression, springs = w.get("r", 1.0), int(w.get("h", 0.0))
+    slant = tan(radians(w.get("q", 0.0)))
+    taper = m.length(w, "e")
+    ends = int(w.get("l", 0.0)) if taper else 0
+    check_thread(w, first, full, degression, int(w.get("l", 0.0)), taper)
+    peak = abs(peak)
+    finish = goal(m, w)
+    end = finish[2]
+    pass_ = Pass(m, m.position[:], end, pitch, 1.0 if w["i"] > 0.0 else -1.0, peak, full, taper, ends)
+    depths = []
+    depth, count = peak + first, 1
+    while depth < peak + full:
+        depths.append(depth)
+        count += 1
+        depth = peak + first * count ** (1.0 / degression)
+    depths += [peak + full] * (1 + springs)
+    for depth in depths:
+        pass_.cut(depth, (depth - peak) * slant, full * slant)
+    go(m, TRAVERSE, finish)
+
+
+def check_thread(w: Words, first: float, full: float, degression: float, ends: int, taper: float) -> None:
+    """Raises Refusal."""
+    if first <= 0.0 or full <= 0.0 or first >= full:
+        raise Refusal(F.BAD_VALUE, "k", word="K", value=w["k"], wanted="the full depth, above J, which is above 0")
+    if degression < 1.0:
+        raise Refusal(F.BAD_VALUE, "r", word="R", value=degression, wanted="1 at least")
+    if not 0 <= ends <= ENTRY | EXIT:
+        raise Refusal(F.BAD_VALUE, "l", word="L", value=ends, wanted="0 to 3")
+    if ends and taper < 0.0:
+        raise Refusal(F.MISSING_WORD, code="G76 with L", word="E", meaning="the taper's length")
+
+
+class Pass:
+    """One pass of a thread and what all have in common; lengths mm."""
+
+    def __init__(
+        self, m: State, start: list[float], end: float, pitch: float, side: float, peak: float, full: float,
+        taper: float, ends: int,
+    ) -> None:  # fmt: skip
+        self.m = m
+        self.start = start
+        self.end = end
+        self.pitch = pitch
+        self.side = side
+        self.peak = peak
+        self.full = full
+        self.taper = taper
+        self.ends = ends
+
+    def to(self, kind: int, depth: float, z: float) -> None:
+        """Go to a depth below the drive line, at Z."""
+        m = self.m
+        place = m.position[:]
+        place[0], place[2] = self.start[0] + self.side * depth, z
+        go(m, kind, place, self.pitch * m.speed if kind == FEED else 0.0)
+
+    def cut(self, depth: float, shift: float, whole_shift: float) -> None:
+        """A pass at a depth, shifted along Z so that the tool cuts on one side."""
+        m = self.m
+        forward = -1.0 if self.end < self.start[2] else 1.0
+        z = self.start[2] + forward * shift
+        end = self.end - forward * (whole_shift - shift)
+        slope = self.pitch * hypot(self.taper, self.full) / self.taper if self.ends else self.pitch
+        advance = forward * self.taper
+        self.to(TRAVERSE, depth - self.peak - self.full, z)
+        if not self.ends & ENTRY:
+            self.to(TRAVERSE, depth, z)
+        m.out.event("DISABLE_FEED_OVERRIDE")
+        if self.ends & ENTRY:
+            start(m, slope)
+            self.to(FEED, depth - self.full, z)
+            self.to(FEED, depth, z + advance)
+        start(m, self.pitch)
+        if self.ends & EXIT:
+            self.to(FEED, depth, end - advance)
+            start(m, slope)
+            self.to(FEED, depth - self.full, end)
+        else:
+            self.to(FEED, depth, end)
+        stop(m)
+        self.to(TRAVERSE, depth - self.peak - self.full, end)
+        m.out.event("ENABLE_FEED_OVERRIDE")
+
+
+follow = partial(Code, group=Group.MOTION, order=Order.MOTION, axes=True, modal=True)
+
+CODES = (
+    follow(
+        "G33",
+        "Synchronized with the spindle",
+        synchronized,
+        takes="k$",
+        needs="k",
+        needs_axes=True,
+        check=check_synchronized,
+    ),
+    follow("G33.1", "Rigid tapping", rigid_tap, takes="k$", needs="k", needs_axes=True, check=check_synchronized),
+    follow("G76", "Threading cycle", thread, takes="pijkrqhel$", needs="pijk", needs_axes=True),
+)
