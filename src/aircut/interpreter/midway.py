@@ -44,7 +44,9 @@ class Midway:
             self.last = ends[-1].tolist()
         out.first += len(out.rows) // ROW.size
         out.rows = bytearray()
+        out.contour = bytearray()
         out.events = Events()
+        out.marks = [0] * len(out.marks)
 
     def arrived(self, m: State, line: int) -> bool:
         return line >= self.start.line and m.out.moves >= self.start.moves
