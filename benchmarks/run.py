@@ -16,7 +16,8 @@ from collections.abc import Callable
 import aircut
 
 LINES = 1_000_000
-GOALS = {"plan of the same": "1,000,000 moves/s", "general lane, 1 M lines of CAM": "150,000 lines/s", "memory beyond the file": "250 bytes a move",
+GOALS = {"plan of the same": "1,000,000 moves/s",
+         "general lane, 1 M lines of CAM": "150,000 lines/s", "memory beyond the file": "250 bytes a move",
          "aircut --help": "0.25 s", "aircut check, small file": "0.25 s"}  # fmt: skip
 
 
