@@ -1,20 +1,97 @@
-"""Cutter radius compensation of LinuxCNC's language.
+"""Cutter radius compensation of LinuxCNC's language, on the house's stage.
 
 Source: the canonical listing, section 12.
 """
 
 from __future__ import annotations
 
+from functools import partial
+
+from aircut.diagnostics import Refusal
+from aircut.diagnostics import faults as F
+from aircut.geometry.offsetting import Point
+from aircut.interpreter import path
+from aircut.interpreter import state as house
+from aircut.interpreter.compensation import Move, Nist
+from aircut.interpreter.cutter import SHIFTS, SLOT, Leaving
+from aircut.interpreter.linuxcnc.arranging import whole
 from aircut.interpreter.linuxcnc.modes import said
+from aircut.interpreter.linuxcnc.motion import wrong
 from aircut.interpreter.linuxcnc.state import State
+from aircut.interpreter.path import Onward
 from aircut.interpreter.table import Code, Group, Order, Words
+from aircut.language.arithmetic import EQUAL
+
+ORIENTATIONS = 9
+#: Events that do not wait behind a move held back.
+AT_ONCE = frozenset(("MESSAGE", "LOG", "PRINT", "SELECT_TOOL", "SELECT_PLANE", "USE_LENGTH_UNITS"))
+
+
+class Beside(Nist):
+    """The stage; its moves carry the line of the block that released them, as the listing has them."""
+
+    def write(self, m: house.State, move: Move, end: Point, center: Point | None, turns: int, onward: Onward) -> None:
+        super().write(m, move._replace(line=m.out.line, file=m.out.file), end, center, turns, onward)
+
+
+def begin(m: State, side: int, radius: float, orientation: int) -> None:
+    """Put the stage in force; a radius below zero changes sides. Raises Refusal."""
+    if m.cutter:
+        raise Refusal(F.UNDER_COMPENSATION, what="G41 or G42")
+    if m.plane_code not in (170, 180):
+        raise wrong("compensation needs G17 or G18")
+    if radius < 0.0:
+        side, radius = -side, -radius
+    said(m, f"cutter radius compensation on {'left' if side > 0 else 'right'}")
+    m.cutter = 41 if side > 0 else 42
+    m.out.at_once = AT_ONCE
+    shift = (SHIFTS[orientation][0] * radius, SHIFTS[orientation][1] * radius)
+    stage = Beside(m, radius, side, shift)
+    stage.contour = stage.contour[:6]
+    path.set_stage(m, SLOT, stage)
+
+
+def of_table(side: int, m: State, w: Words) -> None:
+    """G41, G42: by the diameter of the tool D, or of that in the spindle. Raises Refusal."""
+    slot = 0
+    if "d" in w:
+        number = round(w["d"])
+        if abs(w["d"] - number) > EQUAL or number < 0:
+            raise Refusal(F.BAD_VALUE, "d", word="D", value=w["d"], wanted="a tool's number")
+        slot = m.slot_of(number)
+    tool = m.slots[slot]
+    begin(m, side, tool.diameter / 2.0, int(tool.p3) if m.plane == 1 else 0)
+
+
+def dynamic(side: int, m: State, w: Words) -> None:
+    """G41.1, G42.1: by the diameter D; L is the orientation of a lathe tool. Raises Refusal."""
+    if "d" not in w:
+        raise Refusal(F.MISSING_WORD, code="G41.1", word="D", meaning="the diameter")
+    orientation = whole("l", w.get("l", 0.0))
+    if orientation and m.plane != 1:
+        raise Refusal(F.COMPENSATION_L, "l")
+    if not 0 <= orientation <= ORIENTATIONS:
+        raise Refusal(F.BAD_VALUE, "l", word="L", value=orientation, wanted="an orientation, 0 to 9")
+    begin(m, side, m.length(w, "d") / 2.0, orientation)
 
 
 def off(m: State, w: Words) -> None:
     """G40."""
-    m.arc_refused = m.cutter != 0
+    if m.cutter:
+        stage = m.stages.get(SLOT)
+        path.flush(m)
+        m.arc_refused = True
+        path.set_stage(m, SLOT, Leaving() if getattr(stage, "entered", True) else None)
     m.cutter = 0
     said(m, "cutter radius compensation off")
 
 
-CODES = (Code("G40", "Compensation off", off, Group.CUTTER, Order.CUTTER),)
+code = partial(Code, group=Group.CUTTER, order=Order.CUTTER)
+
+CODES = (
+    code("G40", "Compensation off", off),
+    code("G41", "Compensation left", partial(of_table, +1), takes="d"),
+    code("G42", "Compensation right", partial(of_table, -1), takes="d"),
+    code("G41.1", "Compensation left by a diameter given", partial(dynamic, +1), takes="dl"),
+    code("G42.1", "Compensation right by a diameter given", partial(dynamic, -1), takes="dl"),
+)

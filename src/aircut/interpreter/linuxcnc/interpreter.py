@@ -13,6 +13,7 @@ from typing import Any
 from aircut.canon import CHUNK, ROW, Chunk
 from aircut.diagnostics import Frame, Refusal, Span
 from aircut.diagnostics import faults as F
+from aircut.interpreter import path
 from aircut.interpreter.compiling import FAILURES
 from aircut.interpreter.linuxcnc import starting
 from aircut.interpreter.linuxcnc.arranging import Steps, arrange, check_values, gather
@@ -119,6 +120,7 @@ class Interpreter(Run):
             yield from self.lines()
         except Stopped:
             pass
+        m.out.drop()
         m.out.line = 0
         m.out.event("ON_RESET")
         m.out.event("ON_RESET")
@@ -246,6 +248,8 @@ class Interpreter(Run):
                 m.motion_name = row.name.lower()
             if row.group is Group.MOTION and not row.cycle:
                 m.cycle = None
+            if row.group is Group.STOP:
+                path.flush(m)
             row.run(m, words)
         if m.transfer is not None:
             transfer, m.transfer = m.transfer, None

@@ -77,7 +77,7 @@ def polar(m: State, w: Words, place: list[float]) -> None:
 def go(m: State, kind: int, place: list[float], speed: float = 0.0, flags: int | None = None) -> None:
     """Move straight to a point of the program's frame."""
     space = m.to_space(place)
-    m.way.line(m, kind, space, speed, m.flags if flags is None else flags)
+    m.way.line(m, kind, space[:6], speed, m.flags if flags is None else flags)
     m.position = place
     m.told = place[:]
 
@@ -170,7 +170,7 @@ def arc(turn: int, m: State, w: Words) -> None:
     length = hypot(around, end[across] - m.position[across]) / m.unit
     speed = speed_of(m, w, "G2", length)
     space = m.to_space(end)
-    m.way.arc(m, space, center_in_space(m, u, v, center), turn * turns, speed, feed_flags(m))
+    m.way.arc(m, space[:6], center_in_space(m, u, v, center), turn * turns, speed, feed_flags(m))
     m.position = end
     m.told = end[:]
 

@@ -152,13 +152,14 @@ def set_system(here: bool, m: State, w: Words) -> None:
             if letter in w:
                 m.numbered[first + i] = m.axis(w, i) / (INCH if i in LINEAR else 1.0)
     if system == m.system:
-        moved = [
-            p + o for p, o in zip((*m.turned(*m.position[:2], m.rotation), *m.position[2:]), m.origin, strict=True)
-        ]
+        moved = m.position[:]
+        moved[0], moved[1] = m.turned(moved[0], moved[1], m.rotation)
+        moved = [p + o for p, o in zip(moved, m.origin, strict=True)]
         m.load_system()
         if not here:  # LinuxCNC forgets here that G92's offset turns too: the machine's position does not stay
             moved = [p - o for p, o in zip(moved, m.origin, strict=True)]
-            m.position = [*m.turned(*moved[:2], -m.rotation), *moved[2:]]
+            moved[0], moved[1] = m.turned(moved[0], moved[1], -m.rotation)
+            m.position = moved
         tell_system(m)
         tell_rotation(m)
     else:

@@ -92,7 +92,8 @@ class State(house.State):
         return [p + o for p, o in zip(moved, self.origin, strict=True)]
 
     def to_program(self, place: list[float]) -> list[float]:
-        """The inverse of `to_space`."""
+        """The inverse of `to_space`; of six axes, U, V and W stay."""
+        place = [*place, *self.position[len(place) :]]
         moved = [p - o for p, o in zip(place, self.origin, strict=True)]
         moved[0], moved[1] = self.turned(moved[0], moved[1], -self.rotation)
         return [p - s for p, s in zip(moved, self.shift, strict=True)]
