@@ -124,3 +124,13 @@ def test_curves_are_pictures(folder, what, suffix):
 def test_a_curve_is_no_page(folder):
     made = CliRunner().invoke(cli, ["plot", str(folder / "part.ngc"), "--what", "speed", "-o", "x.html"])
     assert made.exit_code == 2 and "drawn as .png or .svg" in made.output
+
+
+def test_the_page_shows_blended_corners_beside_the_programmed_path(folder):
+    from aircut.api import loads
+    from aircut.export import page
+
+    result = loads("G21 G90 G64 P1\nG1 X20 F3000\nY20\nG2 X40 I10\nM2\n").run()
+    plain, blended = (page.html(result.recording, {}, "part", plan) for plan in (None, result.plan()))
+    assert plain.count('id="column-contour-') == blended.count('id="column-contour-') == 4
+    assert len(blended) > len(plain)

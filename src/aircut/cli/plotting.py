@@ -35,7 +35,7 @@ def plot(file: Path, output: Path, what: str, options: dict[str, Any]) -> int:
 
             sources = {name: source.whole() for name, source in result.sources.items()}
             with replacing(output) as out:
-                out.write(page.html(result.recording, sources, title))
+                out.write(page.html(result.recording, sources, title, blended(result)))
         else:
             from aircut.export import still
 

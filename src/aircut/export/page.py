@@ -17,12 +17,14 @@ from html import escape
 from importlib import resources
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from aircut.canon import Recording
+from aircut.canon import Kind, Recording
 from aircut.export.seen import box, finite, programmed, seen
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from aircut.planner import Plan
 
 TITLE_MARK = "<!--aircut:title-->"
 DATA_MARK = "<!--aircut:data-->"
@@ -123,15 +125,23 @@ def written(facts: Any) -> str:
     return plain.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
-def html(recording: Recording, sources: dict[str, str], title: str) -> str:
+def html(recording: Recording, sources: dict[str, str], title: str, plan: Plan | None = None) -> str:
     """The complete page, with no reference to anything outside it.
 
+    plan: where it blends corners, the path is shown as followed, and the programmed one beside it.
     sources: text of each file by its name in recording.files; a name without a text is shown without one.
     """
     import numpy as np
 
     toolpath = recording.toolpath
     shown = seen(toolpath, SPARE_POINTS, TOOLS)
+    contour, drawn = programmed(recording, SPARE_POINTS)
+    if plan is not None and plan.blends and not shown.part and not len(contour):
+        points, move = plan.polyline()
+        if move[-1] == len(toolpath) - 1 and (np.diff(move) <= 1).all():  # the viewer wants a point of each move
+            contour, drawn = shown.points, toolpath.kind[np.maximum(shown.move, 0)] != Kind.TRAVERSE
+            drawn[0] = False
+            shown = shown._replace(points=finite(points[:, :3]), move=move)
     points, move = shown.points, shown.move
     names = list(recording.files) or list(sources)
     jobs: list[tuple[Callable[..., tuple[dict[str, Any], bytes]], tuple[Any, ...]]] = [
@@ -142,7 +152,6 @@ def html(recording: Recording, sources: dict[str, str], title: str) -> str:
     jobs += [(column, ("feed", finite(toolpath.feed), QUANTUM))]
     jobs += [(column, (name, toolpath.columns[name])) for name in ("line", "file", "tool", "kind")]
     jobs += [(column, ("move", move))]
-    contour, drawn = programmed(recording, SPARE_POINTS)
     jobs += [(column, (f"contour-{axis}", contour[:, index], QUANTUM)) for index, axis in enumerate("xyz")]
     jobs += [(column, ("contour-drawn", drawn.astype(np.int32)))]
     with ThreadPoolExecutor() as pool:

@@ -120,7 +120,7 @@ def lay(
     bounds += [value if smooth and value is not None and isfinite(value) else 1e300 for value in limits.jerk]
     order = ("x", "y", "z", "a", "b", "c", "u", "v", "feed", "turns", "kind", "plane", "flags")
     got = kernel.lay(
-        *[np.require(toolpath.columns[name], requirements="CW") for name in order],
+        *[np.require(toolpath.columns[name], requirements=["C", "W"]) for name in order],
         np.array([*toolpath.start, *[0.0] * 6]),
         np.array(bounds),
         limits.cycle,
