@@ -20,7 +20,7 @@ examples = pytest.mark.skipif(not EXAMPLES.exists(), reason="the documents' exam
 
 def gaps(plan: Plan) -> np.ndarray:
     """How far the motion stays away from the end of each move, mm."""
-    points = plan.blended(points=201)[:, :3]
+    points = plan.polyline(turn=0.01)[0][:, :3]
     first, way = points[:-1], np.diff(points, axis=0)
     square = np.maximum((way**2).sum(axis=1), 1e-30)
     found = []

@@ -231,6 +231,7 @@ class Plan:
         _, _, bend = self.path.at(pieces, self.path.length / 2)
         bend = np.sqrt((bend**2).sum(axis=1)) * self.path.length
         count = np.clip(np.ceil(bend / turn), 1, 1000).astype(np.int64)
+        count += (count % 2 == 1) & (self.path.shape >= FILLET)  # the place nearest to the corner is among them
         piece = np.repeat(pieces, count)
         nth = np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count) + 1
         place, _, _ = self.path.at(piece, self.path.length[piece] * nth / count[piece])
