@@ -228,6 +228,7 @@ class Writer:
             "show": (self.show, 3),
         }
         wanted = only.split(",") if only else list(topics)
+        self.codes = [code for code in CODES if "compensation" in wanted or code[:3] not in ("G41", "G42")]
         self.topics = [method for name in wanted for method in [topics[name][0]] * topics[name][1]]
 
     # --- pieces
@@ -616,7 +617,7 @@ class Writer:
                 "G1 X1 M2", "M30", "M2", "f", "x", "g", "G", "M", "G0 X1 Y", "a", "@", "G0G1X1",
             ))  # fmt: skip
 
-        codes = self.random.sample(CODES, self.random.choice((0, 1, 1, 1, 2))) + self.random.sample(
+        codes = self.random.sample(self.codes, self.random.choice((0, 1, 1, 1, 2))) + self.random.sample(
             M_CODES, self.random.choice((0, 0, 0, 1))
         )
         letters = self.random.sample("XYZABCDEFHIJKLPQRST@^$", self.random.choice((0, 1, 2, 3, 4)))

@@ -32,5 +32,5 @@ alone = partial(Code, group=Group.STOP, order=Order.RETURN, sole=True)
 
 CODES = (
     alone("M98", "Call", call, takes="pl", needs="p"),
-    alone("M99", "Return", back),
+    Code("M99", "Return", back, Group.STOP, Order.RETURN),
 )

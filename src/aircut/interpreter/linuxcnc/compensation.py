@@ -46,9 +46,10 @@ def begin(m: State, side: int, radius: float, orientation: int) -> None:
     m.cutter = 41 if side > 0 else 42
     m.out.at_once = AT_ONCE
     shift = (SHIFTS[orientation][0] * radius, SHIFTS[orientation][1] * radius)
-    stage = Beside(m, radius, side, shift)
-    stage.contour = stage.contour[:6]
-    path.set_stage(m, SLOT, stage)
+    if radius:
+        stage = Beside(m, radius, side, shift)
+        stage.contour = stage.contour[:6]
+        path.set_stage(m, SLOT, stage)
 
 
 def of_table(side: int, m: State, w: Words) -> None:
@@ -81,7 +82,7 @@ def off(m: State, w: Words) -> None:
         stage = m.stages.get(SLOT)
         path.flush(m)
         m.arc_refused = True
-        path.set_stage(m, SLOT, Leaving() if getattr(stage, "entered", True) else None)
+        path.set_stage(m, SLOT, Leaving() if getattr(stage, "entered", False) else None)
     m.cutter = 0
     said(m, "cutter radius compensation off")
 
@@ -90,8 +91,8 @@ code = partial(Code, group=Group.CUTTER, order=Order.CUTTER)
 
 CODES = (
     code("G40", "Compensation off", off),
-    code("G41", "Compensation left", partial(of_table, +1), takes="d"),
-    code("G42", "Compensation right", partial(of_table, -1), takes="d"),
+    code("G41", "Compensation left", partial(of_table, +1), takes="dl"),
+    code("G42", "Compensation right", partial(of_table, -1), takes="dl"),
     code("G41.1", "Compensation left by a diameter given", partial(dynamic, +1), takes="dl"),
     code("G42.1", "Compensation right by a diameter given", partial(dynamic, -1), takes="dl"),
 )

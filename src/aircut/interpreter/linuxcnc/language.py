@@ -21,7 +21,7 @@ from aircut.interpreter.linuxcnc import (
 from aircut.interpreter.linuxcnc.interpreter import Interpreter
 from aircut.interpreter.linuxcnc.named import NAMED
 from aircut.interpreter.state import INCH
-from aircut.interpreter.table import Code, Dialect
+from aircut.interpreter.table import Code, CutterRules, Dialect
 from aircut.machine.tools import Tool
 
 CODES = (
@@ -66,5 +66,6 @@ LINUXCNC = Dialect(
     settings=offsets.SETTINGS,
     no_variable="parameters are #1 to #5601",
     axes="XYZABC",
+    cutter=CutterRules(straight=0.05, at_once=compensation.AT_ONCE),
     tools=TOOLS,
 )

@@ -32,12 +32,16 @@ def check(m: State, w: Words) -> None:
 
 
 def trace(m: State, count: int, points: Sequence[Point], end: list[float]) -> None:
-    """Tell a spline of so many control points, and write its moves."""
+    """Tell a spline of so many control points, and write its moves.
+
+    LinuxCNC's stand-alone interpreter does not remember splines among what it has printed.
+    """
+    told = m.told
     m.out.event("NURBS_FEED", count)
     for x, y in points:
         go(m, FEED, [x, y, *m.position[2:]], m.gave_feed * m.unit, m.flags | TOLD)
     m.position = end
-    m.told = end[:]
+    m.told = told
 
 
 def cubic(m: State, w: Words) -> None:
