@@ -55,7 +55,7 @@ def machine(options: dict[str, Any]) -> Machine:
                 click.echo(f"{text} (warning)", err=True)
             made.own_tools = True
         if options["parameters"]:
-            known = (*memory.PERSISTENT, *memory.GIVEN)
+            known = dialect(options).parameters or (*memory.PERSISTENT, *memory.GIVEN)
             made.variables |= memory.read_parameters(options["parameters"], known)
     except MachineError as error:
         raise click.UsageError(str(error)) from None
@@ -108,11 +108,9 @@ def policy(file: Path, options: dict[str, Any]) -> Policy:
 
 def remember(options: dict[str, Any], made: Machine, finished: Run) -> None:
     """Write back what outlives the run, where there is a place for it. Raises click.ClickException."""
-    from aircut.interpreter.starting import remembered
-
     if not (options["parameters"] or made.folder):
         return
-    kept = remembered(finished.state)
+    kept = finished.remembered()
     try:
         if options["parameters"]:
             memory.write_parameters(options["parameters"], kept)

@@ -118,6 +118,12 @@ class Run:
         """Whether there was an error."""
         return any(d.severity is Severity.ERROR for d in self.diagnostics)
 
+    def remembered(self) -> dict[int, float]:
+        """The numbered variables that outlive the run, as the machine stores them."""
+        from aircut.interpreter.starting import remembered
+
+        return remembered(self.state)
+
     def run(self) -> Iterator[Chunk]:
         """Run the program with nobody to ask; yields its motion and events as they come."""
         for item in self.execute():

@@ -192,4 +192,5 @@ class Dialect(NamedTuple):
     no_variable: str  # hint for numbers outside all ranges
     cutter: CutterRules = CutterRules()
     axes: str = "XYZ"  # of the machine that serves when none is given
+    parameters: range | None = None  # that a parameter file may hold, if not the machine's own
     tools: tuple[Tool, ...] = ()  # that this machine has, if not the built-in ones

@@ -301,6 +301,11 @@ class Interpreter(Run):
                 self.state.out.event("COMMENT", "interpreter: percent sign missing from end of file")
         raise Stopped
 
+    def remembered(self) -> dict[int, float]:
+        """The parameters that were given, and those that outlive every run (inches, degrees)."""
+        numbers = sorted({*self.machine.variables, *starting.PERSISTENT})
+        return {number: self.state.numbered[number] for number in numbers if number < len(self.state.numbered)}
+
     # --- files
 
     def find_file(self, name: str) -> Text | None:

@@ -9,6 +9,7 @@ from aircut.interpreter.linuxcnc import (
     calls,
     compensation,
     cycles,
+    later,
     modes,
     motion,
     offsets,
@@ -20,6 +21,7 @@ from aircut.interpreter.linuxcnc import (
 )
 from aircut.interpreter.linuxcnc.interpreter import Interpreter
 from aircut.interpreter.linuxcnc.named import NAMED
+from aircut.interpreter.linuxcnc.state import LAST
 from aircut.interpreter.state import INCH
 from aircut.interpreter.table import Code, CutterRules, Dialect
 from aircut.machine.tools import Tool
@@ -36,6 +38,7 @@ CODES = (
     *cycles.CODES,
     *splines.CODES,
     *threading.CODES,
+    *later.CODES,
 )
 
 
@@ -66,6 +69,7 @@ LINUXCNC = Dialect(
     settings=offsets.SETTINGS,
     no_variable="parameters are #1 to #5601",
     axes="XYZABC",
+    parameters=range(1, LAST + 1),
     cutter=CutterRules(straight=0.05, at_once=compensation.AT_ONCE),
     tools=TOOLS,
 )

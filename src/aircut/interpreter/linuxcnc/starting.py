@@ -6,9 +6,16 @@ Source: the canonical listing, section 3.
 from __future__ import annotations
 
 from aircut.interpreter.linuxcnc.offsets import tell_rotation, tell_shift, tell_system
-from aircut.interpreter.linuxcnc.state import G92, SYSTEM, State
+from aircut.interpreter.linuxcnc.state import G92, ORIGINS, STEP, SYSTEM, State
 
 SYSTEMS = 9
+#: Parameters that outlive every run. Source: the canonical listing, section 8.
+PERSISTENT = (
+    *range(5161, 5170),
+    *range(5181, 5190),
+    *range(5210, 5221),
+    *(ORIGINS + STEP * system + i for system in range(SYSTEMS) for i in range(10)),
+)
 
 
 def begin(m: State) -> None:
