@@ -6,13 +6,14 @@ from math import atan2, cos, hypot, pi, radians, sin
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from aircut.geometry import transforms
 from aircut.geometry.arcs import sweep
 from aircut.geometry.transforms import Arc, Transform, scaled_arc
 
+patient = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 numbers = st.floats(-1000.0, 1000.0)
 angles = st.floats(-720.0, 720.0)
 factors = st.floats(0.01, 100.0) | st.floats(-100.0, -0.01)
@@ -28,6 +29,7 @@ def rotation(axis: int, degrees: float) -> np.ndarray:
     return np.eye(3) + sin(a) * k + (1.0 - cos(a)) * (k @ k)
 
 
+@patient
 @given(st.integers(0, 2), angles)
 def test_turning(axis: int, angle: float) -> None:
     np.testing.assert_allclose(transforms.turning(axis, angle), rotation(axis, angle), atol=1e-12)
@@ -38,6 +40,7 @@ def test_quarter_turns_are_exact() -> None:
     assert transforms.turning(1, -360.0) == transforms.IDENTITY.matrix
 
 
+@patient
 @given(st.tuples(angles, angles, angles), vectors, vectors)
 def test_tilting_turns_about_x_then_y_then_z(turns: tuple[float, float, float], center: tuple, place: tuple) -> None:
     made = transforms.about(transforms.tilting(turns), center)(*place)
@@ -47,6 +50,7 @@ def test_tilting_turns_about_x_then_y_then_z(turns: tuple[float, float, float], 
     np.testing.assert_allclose(made, moved + center, atol=1e-9)
 
 
+@patient
 @given(st.tuples(factors, factors, factors), vectors, vectors)
 def test_scaling_about_a_center(scale: tuple, center: tuple, place: tuple) -> None:
     made = transforms.scaling(scale, center)(*place)
@@ -54,6 +58,7 @@ def test_scaling_about_a_center(scale: tuple, center: tuple, place: tuple) -> No
     assert made == pytest.approx(wanted, abs=1e-9 * 1e5)
 
 
+@patient
 @given(st.tuples(factors, factors, factors), vectors, st.tuples(angles, angles, angles), vectors, vectors)
 def test_a_chain_and_the_chain_of_inverses(scale: tuple, a: tuple, turns: tuple, b: tuple, place: tuple) -> None:
     matrix = transforms.tilting(turns)
@@ -84,6 +89,7 @@ sweeps = st.floats(0.01, 2 * pi - 0.01) | st.floats(0.01 - 2 * pi, -0.01)
 planar = st.tuples(numbers, numbers)
 
 
+@patient
 @given(planar, st.floats(0.1, 100.0), st.floats(-pi, pi), sweeps, st.floats(0.1, 10.0),
        st.sampled_from([1, -1]), st.sampled_from([1, -1]), planar)  # fmt: skip
 def test_an_arc_scaled_evenly_is_the_image_of_its_points(
@@ -97,6 +103,7 @@ def test_an_arc_scaled_evenly_is_the_image_of_its_points(
     np.testing.assert_allclose(points(made), image, atol=1e-6)
 
 
+@patient
 @given(planar, st.floats(0.1, 100.0), st.floats(-pi, pi), sweeps, factors, factors, planar)
 def test_an_arc_scaled_unevenly_ends_in_the_direction_of_the_scaled_end(
     center: tuple, radius: float, first: float, swept: float, fu: float, fv: float, middle: tuple
@@ -116,6 +123,7 @@ def test_an_arc_scaled_unevenly_ends_in_the_direction_of_the_scaled_end(
         assert np.hypot(*start) == pytest.approx(np.hypot(*to_last), abs=1.1e-4)
 
 
+@patient
 @given(planar, st.floats(1.0, 100.0), st.floats(-pi, pi), sweeps, factors, factors, planar)
 def test_an_arc_by_radius_has_the_larger_factor_of_its_radius(
     center: tuple, radius: float, first: float, swept: float, fu: float, fv: float, middle: tuple

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable, Iterable, Iterator
+from struct import Struct
 from typing import Any, NamedTuple
 
 from aircut.canon.commands import COMMANDS
 from aircut.canon.tips import setups_of
 from aircut.canon.toolpath import ROW, Toolpath
 
+PLACE = Struct("<6d")  # the beginning of a row
 CHUNK = 1 << 16  # moves a chunk
 LARGE = 1 << 22  # bytes from which NumPy's memory is the cheaper one
 NAMES = tuple(COMMANDS)
@@ -97,6 +99,7 @@ class Recorder:
         "first",
         "line",
         "marks",
+        "place",
         "room",
         "rows",
         "stowed",
@@ -105,6 +108,7 @@ class Recorder:
 
     def __init__(self) -> None:
         self.first = 0  # index of the first of `rows`
+        self.place: tuple[float, ...] = (0.0,) * 6  # where the moves handed out have ended
         self.rows = bytearray()
         self.arena: memoryview | None = None  # where kernels write; it becomes chunks without being copied
         self.used = 0  # bytes of the arena
@@ -121,6 +125,14 @@ class Recorder:
     def moves(self) -> int:
         """Moves so far."""
         return self.first + len(self.rows) // ROW.size
+
+    def end(self) -> tuple[float, ...]:
+        """Where the last move ended: machine coordinates without the tool's offset, mm and degrees."""
+        if self.rows:
+            return PLACE.unpack_from(self.rows, len(self.rows) - ROW.size)
+        if self.arena is not None and self.used > self.stowed:
+            return PLACE.unpack_from(self.arena, self.used - ROW.size)
+        return self.place
 
     def event(self, name: str, *values: Any) -> None:
         """Write one command that is not motion. Lengths in mm."""
@@ -206,6 +218,7 @@ class Recorder:
         done = self.marks[0] if self.marks else len(events)
         self.events = events.cut(done)
         self.marks = [mark - done for mark in self.marks]
+        self.place = self.end()
         if self.arena is not None and self.used + len(self.rows) <= len(self.arena):
             self.stow()
         rows: bytes | memoryview

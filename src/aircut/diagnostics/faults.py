@@ -201,6 +201,12 @@ NO_PROGRAM_END = Fault("no-program-end", "the program has no M2 or M30: it ends 
 POLAR_MIX = Fault("polar-mix", "{word} together with a polar word", "@ and ^ stand for both axes of the plane")
 POLAR_MACHINE = Fault("polar-machine", "polar words with G53", "G53 takes positions of the machine's axes")
 POLAR_POLE = Fault("polar-pole", "an incremental polar move cannot start at the pole: it has no angle there")
+TRAVEL = Fault(
+    "travel-limit",
+    "{axis} would go to {value:.10g} {unit}, {beyond:.4g} {unit} beyond its limit of {limit:.10g}",
+    "positions of the machine's axes, with the tool's offset; the limit is {axis}'s {name} in machine.toml",
+)
+TRAVEL_IN_CHANGE = TRAVEL._replace(code="travel-limit-in-change", severity=WARNING)
 SCALING_WORDS = Fault(
     "scaling-words", "G51 needs P, or I, J and K", "P is the factor of all axes; I, J and K are those of X, Y and Z"
 )

@@ -8,7 +8,7 @@ The functions on numbers serve the interpreter, those on arrays everyone else.
 
 from __future__ import annotations
 
-from math import atan2, hypot, sqrt, tau
+from math import atan2, ceil, floor, hypot, sqrt, tau
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
+Point = tuple[float, float]  # u and v
+QUARTER = tau / 4
 FULL_CIRCLE_FUZZ = 1e-6  # radians: an arc that sweeps less than this goes all the way round
 
 #: Plane number (0 XY, 1 ZX, 2 YZ) -> indices of u, v and w among X, Y, Z.
@@ -35,6 +37,24 @@ def sweep(start: tuple[float, float], end: tuple[float, float], center: tuple[fl
     if angle > -FULL_CIRCLE_FUZZ:
         angle -= tau
     return angle + tau * (turns + 1)
+
+
+def reaches(start: Point, end: Point, center: Point, turns: int) -> tuple[Point, Point]:
+    """Lowest and highest u and v of an arc, mm."""
+    swept = sweep(start, end, center, turns)
+    first = atan2(start[1] - center[1], start[0] - center[0])
+    lower, upper = min(first, first + swept), max(first, first + swept)
+    radius = max(hypot(start[0] - center[0], start[1] - center[1]), hypot(end[0] - center[0], end[1] - center[1]))
+    low, high = [min(start[i], end[i]) for i in (0, 1)], [max(start[i], end[i]) for i in (0, 1)]
+    for quarter in range(ceil(lower / QUARTER), floor(upper / QUARTER) + 1):
+        axis = quarter % 2
+        if quarter % 4 < 2:
+            high[axis] = max(high[axis], center[axis] + radius)
+        else:
+            low[axis] = min(low[axis], center[axis] - radius)
+        if quarter - lower / QUARTER > 4:
+            break
+    return (low[0], low[1]), (high[0], high[1])
 
 
 def center_of_radius(

@@ -22,10 +22,11 @@ from aircut.geometry.arcs import PLANE_AXES
 from aircut.interpreter.auxiliary import stop
 from aircut.interpreter.cycles import CYCLES, Cycle, Do, Hole, Steps, bore_manual_out
 from aircut.interpreter.feeding import feed_speed
-from aircut.interpreter.motion import FAR, FEED, ROTARY_AXES, SAME, TRAVERSE, target, write
+from aircut.interpreter.motion import FEED, ROTARY_AXES, SAME, TRAVERSE, target, write
 from aircut.interpreter.requests import Request
 from aircut.interpreter.state import State, out_of_range, whole
 from aircut.interpreter.table import AXES, Code, Group, Order, Words
+from aircut.interpreter.travel import FAR
 
 MOST = 1_000_000  # holes or bites of one block: beyond, a word is mistaken
 LEAST_BITE = 1e-12  # of the height: floating-point numbers have no smaller steps

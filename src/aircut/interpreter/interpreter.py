@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
 from aircut.canon import CHUNK, ROW, Chunk
-from aircut.diagnostics import Fault, Frame, Refusal, Span
+from aircut.diagnostics import Fault, Frame, Refusal, Severity, Span
 from aircut.diagnostics import faults as F
 from aircut.interpreter import compensation, macros, path, starting
 from aircut.interpreter.arranging import Steps, arrange, code_name, find
@@ -90,8 +90,14 @@ class Interpreter(Run):
         return tuple(Frame(level.call.name, level.unit.source.name, level.line) for level in self.stack)
 
     def warn(self, fault: Fault, letter: str = "", **values: Any) -> None:
-        """A warning of the block being run."""
-        self.tell_refusal(Refusal(fault, letter, **values), self.unit, self.line)
+        """A warning of the block whose move is being written; or an error past which checking goes on as if all were
+        well. Raises Stopped for an error in a run.
+        """
+        out = self.state.out
+        unit = self.units[self.files[out.file]]
+        self.tell_refusal(Refusal(fault, letter, **values), unit, out.line - 1)
+        if fault.severity is Severity.ERROR and not self.settings.keep_going:
+            self.halt()
 
     def tell_refusal(self, refusal: Refusal, unit: Unit, line: int, stack: bool = True) -> None:
         frames = self.stack_frames() if stack else ()

@@ -43,6 +43,7 @@ class Midway:
             self.highest = max(self.highest, float(np.max(ends[:, 2])))
             self.last = ends[-1].tolist()
         out.first += len(out.rows) // ROW.size
+        out.place = out.end()
         out.rows = bytearray()
         out.contour = bytearray()
         out.events = Events()

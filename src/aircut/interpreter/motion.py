@@ -13,11 +13,12 @@ from aircut.canon import EXACT_STOP, INVERSE_TIME, ROW, TIP, Kind
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.geometry import arcs
-from aircut.interpreter import polar, rotary, transforming
+from aircut.interpreter import polar, rotary, transforming, travel
 from aircut.interpreter.feeding import TINY, arc_speed, feed_speed, line_speed
 from aircut.interpreter.path import RECORDER
 from aircut.interpreter.state import INCH, PLANES, State, out_of_range, whole
 from aircut.interpreter.table import AXES, Code, Group, Order, Words
+from aircut.interpreter.travel import FAR
 
 pack = ROW.pack
 TRAVERSE, FEED, ARC, PROBE = int(Kind.TRAVERSE), int(Kind.FEED), int(Kind.ARC), int(Kind.PROBE)
@@ -28,7 +29,6 @@ CENTER_WORDS = "ijk"
 MISMATCH = 0.0254  # mm by which an arc's two radii may differ, or
 MISMATCH_SHARE = 0.001  # this part of the larger
 RADIUS_SLACK = 1e-4  # part of the chord by which an R may be too short
-FAR = 1e9  # mm, degrees, mm/min: nothing reasonable is beyond
 SAME = 1e-9  # mm, degrees: positions nearer than this are one
 
 
@@ -59,7 +59,11 @@ def target(m: State, w: Words) -> list[float] | None:
                 goal[i] += w[axis] * (unit if i < 3 else 1.0)
     if m.polar or "@" in w or "^" in w:
         named = polar.place(m, w, goal) or named
-    if max(goal) > FAR or min(goal) < -FAR:
+    x, y, z, a, b, c = goal
+    if not (
+        -FAR <= x <= FAR and -FAR <= y <= FAR and -FAR <= z <= FAR
+        and -FAR <= a <= FAR and -FAR <= b <= FAR and -FAR <= c <= FAR
+    ):  # fmt: skip
         axis = max((abs(goal[i]), axis) for i, axis in NUMBERED_AXES)[1]
         raise Refusal(
             F.BAD_VALUE,
@@ -91,10 +95,16 @@ def write(m: State, kind: int, goal: list[float], speed: float, flags: int) -> N
     if m.frame is not None or m.way is not RECORDER:
         m.way.line(m, kind, m.to_space(goal), speed, flags)
     else:
-        o = m.offset
+        x, y, z, a, b, c = goal
+        ox, oy, oz, oa, ob, oc = m.offset
+        lx, hx, ly, hy, lz, hz, la, ha, lb, hb, lc, hc = m.box
+        if not (
+            lx <= x <= hx and ly <= y <= hy and lz <= z <= hz and la <= a <= ha and lb <= b <= hb and lc <= c <= hc
+        ):
+            travel.check_line(m, m.to_space(goal))
         out = m.out
         out.rows += pack(
-            goal[0] + o[0], goal[1] + o[1], goal[2] + o[2], goal[3] + o[3], goal[4] + o[4], goal[5] + o[5],
+            x + ox, y + oy, z + oz, a + oa, b + ob, c + oc,
             0.0, 0.0, speed, out.line, m.tool, 0, out.file, kind, m.plane, flags,
         )  # fmt: skip
     m.position = goal

@@ -14,6 +14,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from aircut.canon import ROW, Kind
+from aircut.interpreter import travel
 
 if TYPE_CHECKING:
     from aircut.interpreter.state import State
@@ -48,7 +49,8 @@ class Stage(Protocol):
 
 
 def record_line(m: State, kind: int, end: Place, speed: float, flags: int) -> None:
-    """Write a straight move down."""
+    """Write a straight move down. Raises Refusal, Stopped where it leaves the travel of an axis."""
+    travel.check_line(m, end)
     out = m.out
     out.rows += pack(
         end[0], end[1], end[2], end[3], end[4], end[5],
@@ -57,7 +59,8 @@ def record_line(m: State, kind: int, end: Place, speed: float, flags: int) -> No
 
 
 def record_arc(m: State, end: Place, center: tuple[float, float], turns: int, speed: float, flags: int) -> None:
-    """Write an arc down."""
+    """Write an arc down. Raises as above."""
+    travel.check_arc(m, end, center, turns)
     out = m.out
     out.rows += pack(
         end[0], end[1], end[2], end[3], end[4], end[5],

@@ -21,6 +21,7 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.geometry import arcs
 from aircut.geometry.kinematics import MODELS, Setup, Sweep, minus, pieces
+from aircut.interpreter import travel
 from aircut.interpreter.motion import LINEAR_AXES
 from aircut.interpreter.path import Onward, Place
 from aircut.interpreter.state import State
@@ -107,6 +108,7 @@ class Control(NamedTuple):
             self.facts, start, end, speed, count, numbers, rest | inner << 48, rest | last << 48,
             doubles, words,
         )  # fmt: skip
+        travel.check_rows(m, doubles, 1, count + 1)
         out.rows += rows[ROW.size : room]
 
     def flush(self, m: State, *, onward: Onward) -> None:

@@ -14,6 +14,7 @@ from aircut.diagnostics import faults as F
 from aircut.geometry import kinematics
 from aircut.geometry.kinematics import Setup
 from aircut.interpreter.path import RECORDER, Onward, Place, Stage
+from aircut.interpreter.travel import shifted, travel_of
 from aircut.language.arithmetic import EQUAL
 from aircut.machine import Machine
 from aircut.machine.tools import EMPTY
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
 INCH = 25.4  # mm
 PLANES = ("XY", "XZ", "YZ")  # by plane number, as canonical commands name them
 WORK_SYSTEMS = 9
-ENDLESS = ((float("-inf"),) * 6, (float("inf"),) * 6)
 
 
 class State:
@@ -36,13 +36,14 @@ class State:
     def __init__(self, dialect: Dialect, machine: Machine, warn: Callable[..., None]) -> None:
         self.dialect = dialect
         self.machine = machine
-        self.warn = warn  # warn(fault, letter="", **values)
+        self.warn = warn  # warn(fault, letter="", **values); an error stops the run, unless it keeps going
         self.out = Recorder()
         self.axes = machine.letters
 
         self.position = [0.0] * 6
         self.offset = [0.0] * 6  # work system + G52 + G92
         self.frame: Frame | None = None  # scaling and rotation
+        self.travel = travel_of(machine)
         self.stages: dict[str, Stage] = {}  # by slot of the path
         self.way: Onward = RECORDER  # where moves go
         self.compensating = False  # G41, G42: the cutter's radius
@@ -54,7 +55,8 @@ class State:
         self.home = [0.0] * 6  # G28, machine axes
         self.second_home = [0.0] * 6  # G30
         self.tools = dict(machine.tools)  # the run's own table
-        self.tool_offset = [0.0] * 6
+        self.tool_offset: Place = [0.0] * 6
+        self.fence()
         self.setup: Setup | None = None  # of tool center point control
 
         self.modal: dict[Group, Code] = {}
@@ -151,11 +153,17 @@ class State:
         origin, local, shift = self.origins[self.system], self.local, self.shift
         on = 1.0 if self.shifted else 0.0
         self.offset = [origin[i] + local[i] + on * shift[i] for i in range(6)]
+        self.fence()
         self.position = self.to_program(here)
+
+    def fence(self) -> None:
+        """Recompute the boxes that the axes' travel allows, after a change of offsets."""
+        self.space_box = shifted(self.travel, self.tool_offset)
+        self.box = shifted(self.space_box, self.offset, 0.0)
 
     def bounds(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Lowest and highest place in space that the axes can bring the controlled point to, mm and degrees."""
-        return ENDLESS
+        return self.space_box[::2], self.space_box[1::2]
 
     def set_frame(self, frame: Frame | None) -> None:
         """Put a frame in force; the machine position stays."""

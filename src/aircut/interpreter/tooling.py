@@ -42,6 +42,7 @@ def compensate(m: State, offset: list[float], tool: Tool, control: Control | Non
     axes = m.machine_position()
     before, m.setup = m.setup, None if control is None else control.setup
     m.tool_offset = offset
+    m.fence()
     m.compensated_tool = tool
     m.position = m.to_program(m.of_axes(axes))
     m.out.event("USE_TOOL_LENGTH_OFFSET", *offset, 0.0, 0.0, 0.0)

@@ -27,6 +27,7 @@ def twin(name: str, as_name: str) -> ModuleType:
 
 if os.environ.get("AIRCUT_PYTHON_KERNELS"):
     scan = twin("scan", "aircut.kernels.scan")
+    bounds = twin("bounds", "aircut.kernels.bounds")
     mesh = twin("mesh", "aircut.kernels.mesh")
     pieces = twin("pieces", "aircut.kernels.pieces")
     lookahead = twin("lookahead", "aircut.kernels.lookahead")

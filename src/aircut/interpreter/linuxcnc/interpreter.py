@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from aircut.canon import CHUNK, ROW, Chunk
-from aircut.diagnostics import Frame, Refusal, Span
+from aircut.diagnostics import Frame, Refusal, Severity, Span
 from aircut.diagnostics import faults as F
 from aircut.interpreter import path
 from aircut.interpreter.compiling import FAILURES
@@ -90,7 +90,9 @@ class Interpreter(Run):
     # --- diagnostics
 
     def warn(self, fault: Any, letter: str = "", **values: Any) -> None:
-        """A warning of the block being run."""
+        """A warning of the block being run. Raises Refusal for an error."""
+        if fault.severity is Severity.ERROR:
+            raise Refusal(fault, letter, **values)
         self.tell_refusal(Refusal(fault, letter, **values))
 
     def tell_refusal(self, refusal: Refusal) -> None:

@@ -131,6 +131,7 @@ def set_units(unit: float, m: State, w: Words) -> None:
     m.blend *= ratio
     m.thinning *= ratio
     m.tool_offset = [t * ratio if i in LINEAR else t for i, t in enumerate(m.tool_offset)]
+    m.fence()
     m.unit = unit
     m.out.event("USE_LENGTH_UNITS", "MM" if unit == 1.0 else "INCHES")
 

@@ -67,6 +67,7 @@ def put_offset(m: State, offset: list[float]) -> None:
     """Put a tool's offset in force: the position reads otherwise, nothing moves."""
     m.position = [p + b - n for p, b, n in zip(m.position, m.tool_offset, offset, strict=True)]
     m.tool_offset = offset
+    m.fence()
     m.out.event("USE_TOOL_LENGTH_OFFSET", *offset)
 
 
