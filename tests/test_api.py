@@ -78,12 +78,12 @@ def test_a_program_runs_again_from_the_start() -> None:
 
 
 def test_stream_gives_the_same_as_run() -> None:
-    text = "G91\n" + "G0 X1 Y2\n" * 150_000 + "M2\n"
+    text = "G91\n" + "G0 X0.0625 Y-0.03125\n" * 150_000 + "M2\n"
     chunks = list(aircut.loads(text).stream())
     assert len(chunks) > 2 and all(isinstance(chunk, Chunk) for chunk in chunks)
     whole = aircut.loads(text).run().toolpath
     assert b"".join(chunk.rows for chunk in chunks) == whole.to_numpy().tobytes()
-    assert whole.x[-1] == 150_000.0
+    assert whole.x[-1] == 150_000 / 16
 
 
 def test_load(tmp_path: Path) -> None:
@@ -121,7 +121,7 @@ def test_an_empty_toolpath() -> None:
 
 def test_columns_are_the_packed_rows() -> None:
     """Column by column what ROW packed, whatever the chunking."""
-    text = "G91 F100\n" + "".join(f"G1 X{i % 7} F{i + 1}\n" for i in range(70_000)) + "M2\n"
+    text = "G91 F100\n" + "".join(f"G1 X{i % 7 - 3} F{i + 1}\n" for i in range(70_000)) + "M2\n"
     toolpath = aircut.loads(text).run().toolpath
     assert toolpath.feed.tolist() == [float(i + 1) for i in range(70_000)]
     assert toolpath.line[0] == 2 and toolpath.line[-1] == 70_001

@@ -77,7 +77,7 @@ def test_straight_programs_never_meet_the_budget() -> None:
 
 
 def test_moves_are_limited_where_they_are_kept() -> None:
-    text = "G91\n#1=0\nWHILE [#1 LT 300000] DO1\n#1=[#1+1]\nG0 X1\nEND1\nM2\n"
+    text = "G91\n#1=0\nWHILE [#1 LT 300000] DO1\n#1=[#1+1]\nG0 X0.01\nEND1\nM2\n"
     result = aircut.loads(text).run(limits=Limits(moves=100_000))
     assert [d.code for d in result.diagnostics] == ["output-limit"]
     assert len(result.toolpath) < 200_000
