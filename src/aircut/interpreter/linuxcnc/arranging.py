@@ -92,6 +92,9 @@ def gather(letters: Sequence[str], values: Sequence[float], dialect: Dialect) ->
             if letter in words and letter not in TWICE and not (letter in "pq" and words[letter] <= FREE):
                 raise Refusal(F.REPEATED_WORD, letter, word=letter.upper())
             words[letter] = value
+    for letter in "pq":
+        if words.get(letter) == FREE:  # as good as not given
+            del words[letter]
     if count > MOST_M:
         raise Refusal(F.TOO_MANY_M, "m")
     return names, words

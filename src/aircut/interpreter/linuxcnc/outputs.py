@@ -56,9 +56,15 @@ def wait(m: State, w: Words) -> None:
     index(w, "p" if "p" in w else "e")
 
 
+def unknown(number: int, m: State, w: Words) -> None:
+    """M100 to M199 are programs beside LinuxCNC, of which the stand-alone interpreter has none. Raises Refusal."""
+    raise Refusal(F.UNKNOWN_CODE, "m", code=f"M{number}")
+
+
 io = partial(Code, group=Group.IO, order=Order.IO)
 
 CODES = (
+    *(Code(f"M{n}", "User's code", partial(unknown, n), Group.USER, Order.USER, takes="pq") for n in range(100, 200)),
     io("M62", "Output on with the motion", partial(digital, "SET_MOTION_OUTPUT_BIT"), takes="p"),
     io("M63", "Output off with the motion", partial(digital, "CLEAR_MOTION_OUTPUT_BIT"), takes="p"),
     io("M64", "Output on", partial(digital, "SET_AUX_OUTPUT_BIT"), takes="p"),
