@@ -1,7 +1,8 @@
 """The canonical listing: one canonical command a line, as LinuxCNC's stand-alone interpreter prints.
 
 Positions are in the program's units and relative to the offsets in force, which
-are themselves commands of the listing. Under tool center point control they are
+are themselves commands of the listing; scaling, rotation and tilt (G51, G68, G68.2)
+are not, and the positions are those that they lead to. Under tool center point control they are
 those of the tip: a straight move has one line, an arc one for each chord.
 """
 

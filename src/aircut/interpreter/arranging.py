@@ -65,7 +65,6 @@ def arrange(rows: Sequence[Code], letters: Sequence[str], motion: Code | None, d
     """
     present = set(letters)
     rows = sole(rows)
-    supported(rows)
     if rows and rows[0].sole:
         missing(rows, present)
         return Steps(tuple(rows), True)
@@ -91,9 +90,7 @@ def arrange(rows: Sequence[Code], letters: Sequence[str], motion: Code | None, d
             raise Refusal(F.AXIS_DISABLED, letter, axis=letter.upper(), wanted=wanted)
     if not axis_letters and not (takers and any(letter in takers[0].wakes for letter in letters)):
         rows = [row for row in rows if not row.fits]  # nothing moves that they could modify
-    supported(takers)
     items = [dialect.items[letter] for letter in letters if letter in dialect.items]
-    supported(items)
     used(rows, letters, dialect)
     missing(rows, present)
     for row in takers:
@@ -101,12 +98,6 @@ def arrange(rows: Sequence[Code], letters: Sequence[str], motion: Code | None, d
             raise Refusal(F.MISSING_AXES, code=row.name)
     order = sorted([*rows, *items], key=lambda row: row.order)
     return Steps(tuple(order), False)
-
-
-def supported(rows: Sequence[Code]) -> None:
-    for row in rows:
-        if not row.supported:
-            raise Refusal(F.NOT_SUPPORTED_YET, row.name[0].lower(), code=row.name, title=row.title)
 
 
 def sole(rows: Sequence[Code]) -> list[Code]:

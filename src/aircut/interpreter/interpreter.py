@@ -282,10 +282,7 @@ class Interpreter(Run):
             rows = [find(name, self.dialect, name[0]) for name in codes]
             arrange(rows, letters, motion, self.dialect, self.state.axes + "xyzabc")
         except Refusal as refusal:
-            if refusal.fault not in (
-                F.UNUSED_WORD,
-                F.NOT_SUPPORTED_YET,
-            ):  # these depend on the modes in force
+            if refusal.fault is not F.UNUSED_WORD:  # that depends on the modes in force
                 self.tell_refusal(refusal, unit, line, stack=False)
 
     def blocks(self) -> Generator[Chunk | Request, Any, None]:
@@ -390,10 +387,6 @@ class Interpreter(Run):
         m = self.state
         m.transfer = self.talk = None
         m.exact_stop = m.machine_frame = False
-        if refusal.fault is F.NOT_SUPPORTED_YET:  # what follows in that mode cannot be run either
-            row = self.dialect.codes.get(refusal.values["code"].lower())
-            if row is not None and row.modal:
-                self.set_mode(row)
 
     def check_moves(self) -> None:
         limit = self.settings.limits.moves

@@ -83,8 +83,6 @@ def set_data(m: State, w: Words) -> None:
     row = m.dialect.settings.get(whole(w, "l"))
     if row is None:
         raise Refusal(F.UNKNOWN_PARAMETER, "l", l=w["l"])
-    if not row.supported:
-        raise Refusal(F.NOT_SUPPORTED_YET, "g", code=row.name, title=row.title)
     for letter in w:
         if letter not in "lfst" and letter not in row.takes and not (row.axes and letter in "xyzabc"):
             raise Refusal(F.UNUSED_WORD, letter, word=letter.upper())

@@ -196,7 +196,7 @@ def guarded(row: Code) -> Code:
             raise Refusal(F.RTCP_CONFLICT, "g", code=row.name, other=m.modal[Group.TOOL_LENGTH].name)
         return row.run(m, w)
 
-    return row._replace(run=run) if row.name in EXCLUDED and row.supported else row
+    return row._replace(run=run) if row.name in EXCLUDED else row
 
 
 lengths = partial(Code, group=Group.TOOL_LENGTH, order=Order.TOOL_LENGTH, takes="h", modal=True)

@@ -125,7 +125,6 @@ class Code(NamedTuple):
     counts: str = ""  # letters of words that must be whole numbers
     least: int = -1000  # and at least this
     text: bool = False  # its P may be a string
-    supported: bool = True  # False: run raises not-supported-yet
 
     @property
     def number(self) -> float:

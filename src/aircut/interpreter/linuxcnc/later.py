@@ -26,6 +26,6 @@ def refuse(name: str, m: State, w: Words) -> None:
 
 
 CODES = tuple(
-    Code(name, title, partial(refuse, name), Group.MOTION, Order.MOTION, takes="qdirpe", axes=True, supported=False)
+    Code(name, title, partial(refuse, name), Group.MOTION, Order.MOTION, takes="qdirpe", axes=True)
     for name, title in NAMES.items()
 )
