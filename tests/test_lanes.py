@@ -8,6 +8,7 @@ from array import array
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 
 import aircut
@@ -65,7 +66,12 @@ def run(text: bytes, letters: str, fast: bool, monkeypatch: pytest.MonkeyPatch, 
         patch.setattr(lane, "FEW", 6)
         if not fast:
             patch.setattr(lane.Lane, "open", lambda self, m: False)
-        result = aircut.loads(text).run(built_in(letters), keep_going=keep_going)
+        machine = built_in(letters)
+        if len(text) % 2:  # odd ones find the limits near
+            machine.axes = {
+                letter: msgspec.structs.replace(axis, min=-60.0, max=45.0) for letter, axis in machine.axes.items()
+            }
+        result = aircut.loads(text).run(machine, keep_going=keep_going)
     events = [(event.at, event.name, event.values, event.line, event.file) for event in result.events]
     state = result.state
     return result.toolpath.to_numpy().tobytes(), events, result.diagnostics, state, result._interpreter.unit.seen
