@@ -114,3 +114,10 @@ def test_the_wave_gets_smoother_with_p() -> None:
     assert smoothing[4] >= smoothing[3] * (1 - 1e-9)
     for tool, tolerance in enumerate((0, 0.1, 0.2, 1, 5)):
         assert away[feeds & (tools == tool)].max() <= tolerance * INCH + 1e-6
+
+
+def test_probing_moves_keep_to_acceleration_and_stop(tmp_path: Path) -> None:
+    """At 10 mm/s and 100 mm/s²: 10 mm take 10/10 + 10/100 s, 5 mm take 5/10 + 10/100 s."""
+    (tmp_path / "machine.toml").write_text("[axes.X]\n[axes.Y]\n[axes.Z]\nvelocity = 3000\nacceleration = 100\n")
+    result = aircut.loads("G21 G90\nG38.2 Z-10 F600\nG38.3 Z-15\nM2\n").run(tmp_path)
+    assert result.plan().times.tolist() == pytest.approx([1.1, 1.7], abs=1e-9)
