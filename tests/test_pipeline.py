@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import aircut
+from aircut.geometry.arcs import PLANE_AXES, sweep
 
 SEED = 20240517
 PROGRAMS = 150
@@ -248,3 +249,52 @@ def test_moves_and_positions_are_those_of_the_matrices(number: int) -> None:
     np.testing.assert_allclose(result.toolpath.ends()[:, :3], model.ends, rtol=0, atol=1e-9 * largest)
     read = [[result.variables.get(1000 + 3 * at + i) for i in range(3)] for at in range(len(model.lines))]
     np.testing.assert_allclose(np.array(read, float), model.reads, rtol=1e-7, atol=1e-7)
+
+
+def along(text: str) -> np.ndarray:
+    """Points on the last move of a program, an arc; (k, 3) machine coordinates."""
+    toolpath = aircut.loads(text).run().toolpath
+    (plane, which, start, end, center), = toolpath.arcs()  # fmt: skip
+    assert which.tolist() == [len(toolpath) - 1]
+    swept = sweep(tuple(start[0][:2]), tuple(end[0][:2]), tuple(center[0][:2]), int(toolpath.turns[-1]))
+    radius = np.hypot(*(start[0] - center[0])[:2])
+    first = np.arctan2(*(start[0] - center[0])[1::-1])
+    part = np.linspace(0.0, 1.0, 50)
+    places = np.empty((50, 3))
+    u, v, w = PLANE_AXES[plane]
+    places[:, u] = center[0][0] + radius * np.cos(first + swept * part)
+    places[:, v] = center[0][1] + radius * np.sin(first + swept * part)
+    places[:, w] = start[0][2] + part * (end[0] - start[0])[2]
+    return places
+
+
+@pytest.mark.parametrize("number", range(100))
+def test_arcs_are_the_images_of_their_points(number: int) -> None:
+    """Under even scaling, mirroring and rotation of the plane an arc's points go where the matrices lead."""
+    generator = np.random.default_rng([SEED, 1000 + number])
+    plane = int(generator.integers(3))
+    u, v, w = PLANE_AXES[plane]
+    center, radius = generator.uniform(-50, 50, 2), generator.uniform(1, 40)
+    angles = generator.uniform(-np.pi, np.pi, 2)
+    start, end = np.zeros(3), np.zeros(3)
+    start[[u, v]] = center + radius * np.array([np.cos(angles[0]), np.sin(angles[0])])
+    end[[u, v]] = center + radius * np.array([np.cos(angles[1]), np.sin(angles[1])])
+    end[w] = generator.uniform(-9, 9)
+    words = "".join(f" {x}{value:.6f}" for x, value in zip("XYZ", end, strict=True))
+    first = "".join(f" {x}{value:.6f}" for x, value in zip("XYZ", start, strict=True))
+    way = center - start[[u, v]]
+    move = f"G{generator.integers(2, 4)}{words} {'IJK'[u]}{way[0]:.6f} {'IJK'[v]}{way[1]:.6f}"
+    factors = np.full(3, generator.uniform(0.2, 3.0)) * generator.choice([1.0, -1.0], 3)
+    middle, about = generator.uniform(-50, 50, (2, 3))
+    angle = generator.uniform(-400, 400)
+    scaled = (
+        "G51" + "".join(f" {x}{a:.6f}" for x, a in zip("XYZ", middle, strict=True))
+        + "".join(f" {x}{a:.9f}" for x, a in zip("IJK", factors, strict=True))
+    )  # fmt: skip
+    turned = f"G68 {'XYZ'[u]}{about[u]:.6f} {'XYZ'[v]}{about[v]:.6f} R{angle:.6f}"
+    head = f"G21 G90 G91.1 {('G17', 'G18', 'G19')[plane]} F100\n"
+    plain = along(f"{head}G0{first}\n{move}\nM2\n")
+    made = along(f"{head}{turned}\n{scaled}\nG0{first}\n{move}\nM2\n")
+    matrix = linear(spun(w, angle), about) @ linear(np.diag(factors), middle)  # the center came before the scaling
+    image = np.column_stack([plain, np.ones(50)]) @ matrix.T
+    np.testing.assert_allclose(made, image[:, :3], atol=2e-3)

@@ -22,12 +22,13 @@ from aircut.interpreter.frame import Frame, Rotation, Scaling
 from aircut.interpreter.rotary import check_indexers
 from aircut.interpreter.state import PLANES, State, out_of_range
 from aircut.interpreter.table import AXES, Code, Group, Order, Words
+from aircut.interpreter.travel import FAR
 
 FEED = int(Kind.FEED)
 LINEAR = AXES[:3]
 ANGLES = "ijk"
 CENTER_WORDS = "ab"  # of the plane's first and second axis, in the order of its letters
-NONE = (0.0, 0.0, 0.0)
+SMALLEST, LARGEST = 1e-6, 1e6  # factors of scaling
 
 
 # --- the codes
@@ -35,7 +36,7 @@ NONE = (0.0, 0.0, 0.0)
 
 def scale(m: State, w: Words) -> None:
     """G51: by P, or by I, J, K along X, Y, Z, about X, Y, Z or the present position. Raises Refusal."""
-    only_linear(w)
+    check_words(m, w)
     rotation = parts(m)[1]
     before = m.to_space(m.position) if rotation is None else [*rotation.back()(*m.to_space(m.position)[:3])]
     here = [place - offset for place, offset in zip(before, m.offset)]  # noqa: B905  three of six
@@ -50,8 +51,8 @@ def factors_of(w: Words) -> Vector:
     if ("p" in w) == bool(own):
         raise Refusal(F.SCALING_WORDS, "p" if "p" in w else "g")
     for letter in own or "p":
-        if w[letter] == 0.0:
-            raise out_of_range(w, letter, "a factor is not zero")
+        if not SMALLEST <= abs(w[letter]) <= LARGEST:
+            raise out_of_range(w, letter, f"a factor is {SMALLEST:g} to {LARGEST:g} or the negative of that, not zero")
     x, y, z = (w.get(letter, 1.0) if own else w["p"] for letter in ANGLES)
     return x, y, z
 
@@ -63,7 +64,7 @@ def unscale(m: State, w: Words) -> None:
 
 def rotate(m: State, w: Words) -> None:
     """G68: by R degrees in the plane, about the given point or where the cutter is. Raises Refusal."""
-    only_linear(w, "ab")
+    check_words(m, w, CENTER_WORDS)
     scaling, rotation = parts(m)
     if rotation is not None and rotation.plane is None:
         raise Refusal(F.ROTATION_CONFLICT, "g", code="G68", other="G68.2")
@@ -91,7 +92,7 @@ def rotate(m: State, w: Words) -> None:
 
 def tilt(m: State, w: Words) -> None:
     """G68.2: by I, J, K degrees about X, Y, Z, in this order, about the given point or the origin. Raises Refusal."""
-    only_linear(w)
+    check_words(m, w)
     scaling, rotation = parts(m)
     if rotation is not None and rotation.plane is not None:
         raise Refusal(F.ROTATION_CONFLICT, "g", code="G68.2", other="G68")
@@ -107,8 +108,11 @@ def unrotate(m: State, w: Words) -> None:
     put(m, parts(m)[0], None)
 
 
-def only_linear(w: Words, allowed: str = "") -> None:
-    """Refuse words of rotary axes."""
+def check_words(m: State, w: Words, allowed: str = "") -> None:
+    """Refuse words of rotary axes, and centers beyond all machines."""
+    for letter in LINEAR + allowed:
+        if letter in w and not abs(w[letter]) * m.unit <= FAR:
+            raise out_of_range(w, letter, "it is beyond all machines")
     for letter in AXES[3:]:
         if letter in w and letter not in allowed:
             raise Refusal(F.UNUSED_WORD, letter, word=letter.upper())
