@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import random
 import subprocess
 import sys
 from pathlib import Path
@@ -216,3 +217,36 @@ def test_the_stop_s_rotary_axes_and_unit() -> None:
     assert stop is not None and stop.place == (50.8, 0.0, 0.0, 30.0, -40.0, 50.0)
     known = program.run(built_in("XYZABC"), start=Start(4, stop.moves, stop), mode=Mode.RESUME).variables
     assert [known[number] for number in range(1, 7)] == pytest.approx([2.0, 30.0, -40.0, 50.0, 2.0, 30.0])
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_what_follows_the_start_moves_as_in_the_whole_program(seed: int) -> None:
+    """From any line: after the approach the rest of the whole run, to the last bit."""
+    rng = random.Random(seed)
+    changes = (
+        "G20",
+        "G21",
+        "G91",
+        "G90",
+        "G55",
+        "G52 X1 Y2",
+        "G92 X3",
+        "G18",
+        "F70",
+        "#1=[#5001+1]",
+        "G81 X2 Y-3 Z-1 R1",
+        "G80",
+    )
+    lines = ["G21 G90 G94 F500 G1"]
+    for _ in range(rng.randint(5, 60)):
+        words = [f"{axis}{rng.uniform(-20, 20):.3f}" for axis in rng.sample("XYZ", rng.randint(1, 3))]
+        lines.append(
+            rng.choice(changes) if rng.random() < 0.25 else rng.choice(("G0 ", "G1 ", "G1 ")) + " ".join(words)
+        )
+    program = aircut.loads("\n".join([*lines, "M2", ""]))
+    whole = program.run()
+    assert whole.ok
+    part = program.run(from_line=rng.randint(1, len(lines)))
+    assert part.ok and part.arrival is not None
+    rest = part.toolpath.ends()[len(part.arrival.approach) :]
+    assert np.array_equal(rest, whole.toolpath.ends()[len(whole.toolpath) - len(rest) :])
