@@ -105,6 +105,9 @@ def test_one_with_an_error_ends_the_row() -> None:
 def test_a_file_and_commands_exclude_each_other() -> None:
     assert aircut("run").returncode == 2
     assert aircut("run", "part.ngc", "--mdi", "G0").returncode == 2
+    assert aircut("run", "--mdi", "G0", "--format", "json").returncode == 2
+    assert aircut("run", "--mdi", "G0", "--from-line", "2").returncode == 2
+    assert aircut("run", "part.ngc", "--as-macro", "--from-line", "2").returncode == 2
 
 
 def test_piped_commands_answer_questions() -> None:

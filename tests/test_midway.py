@@ -71,6 +71,21 @@ def test_the_state_before_the_line_is_told() -> None:
     assert "SELECT_TOOL" in names and "SET_FEED_RATE" in names
 
 
+def test_what_is_in_force_at_the_line_is_told_once_and_nothing_else() -> None:
+    """The planner and the pictures live on what is told: path mode, dynamics, outputs, the last of each."""
+    text = (
+        "G21 G90 F100\nG64 P1\nG61\nG64 P0.5\nG104 A20 D30\nM62 P3\nM62 P4\nM63 P3\nM8\nM9\nG4 P1\nG0 X1\nG0 X2\nM2\n"
+    )
+    result = aircut.loads(text).run(from_line=13)
+    start = [(e.name, e.values) for e in result.events if e.line == 13]
+    assert ("SET_MOTION_CONTROL_BLEND", (0.5,)) in start
+    names = [name for name, _ in start]
+    assert "SET_MOTION_CONTROL_MODE" not in names and "DWELL" not in names and "FLOOD_ON" not in names
+    assert names.count("SET_DYNAMICS") == 1
+    assert ("CLEAR_MOTION_OUTPUT_BIT", (3,)) in start and ("SET_MOTION_OUTPUT_BIT", (4,)) in start
+    assert ("SET_MOTION_OUTPUT_BIT", (3,)) not in start
+
+
 def test_modes_and_restart_position_read_as_numbered_variables() -> None:
     result = aircut.loads(LOOP).run(from_line=10)
     read = [result.variables.get(number) for number in range(10, 18)]

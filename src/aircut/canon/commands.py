@@ -192,3 +192,39 @@ WRITTEN = {
     "WAIT_ORIENT_COMPLETE": "SPINDLE.0.WAIT_ORIENT_COMPLETE",
     "STORE_TOOL": "SET_TOOL_TABLE_ENTRY",
 }
+
+#: Commands that set something, by what they set: the last one of each is in force.
+SETS = {
+    name: what
+    for what, names in {
+        "units": "USE_LENGTH_UNITS",
+        "work system": "SET_G5X_OFFSET",
+        "shift": "SET_G92_OFFSET",
+        "rotation": "SET_XY_ROTATION",
+        "feed reference": "SET_FEED_REFERENCE",
+        "feed mode": "SET_FEED_MODE",
+        "feed": "SET_FEED_RATE",
+        "plane": "SELECT_PLANE",
+        "path": "SET_MOTION_CONTROL_MODE SET_MOTION_CONTROL_BLEND",
+        "thinning": "SET_NAIVECAM_TOLERANCE",
+        "spindle speed": "SET_SPINDLE_SPEED",
+        "spindle": "START_SPINDLE_CLOCKWISE START_SPINDLE_COUNTERCLOCKWISE STOP_SPINDLE_TURNING",
+        "spindle mode": "SET_SPINDLE_MODE",
+        "tool length": "USE_TOOL_LENGTH_OFFSET",
+        "tool center point": "TOOL_CENTER_POINT",
+        "mist": "MIST_ON MIST_OFF",
+        "flood": "FLOOD_ON FLOOD_OFF",
+        "feed override": "ENABLE_FEED_OVERRIDE DISABLE_FEED_OVERRIDE",
+        "speed override": "ENABLE_SPEED_OVERRIDE DISABLE_SPEED_OVERRIDE",
+        "interpolated axes": "INTERPOLATED_AXES",
+        "traverse rate": "SET_TRAVERSE_RATE",
+        "dynamics": "SET_DYNAMICS",
+        "torch": "TORCH_HEIGHT_CONTROL",
+        "tool change": "TOOL_CHANGE_MACRO",
+        "output": "SET_MOTION_OUTPUT_BIT CLEAR_MOTION_OUTPUT_BIT",
+        "analog output": "SET_AUX_OUTPUT_VALUE",
+    }.items()
+    for name in names.split()
+}
+#: Of these there are many, told apart by their first value.
+MANY = ("output", "analog output")

@@ -91,6 +91,11 @@ def run(file: Path | None, style: str, output: Path | None, typed: tuple[str, ..
     """Run a program on the virtual machine and tell what it does."""
     if (file is None) == (not typed):
         raise click.UsageError("give either a FILE or --mdi COMMAND")
+    beside = [name for name in ("from_line", "stop_line", "resume", "as_macro") if options[name]]
+    if typed and (beside or output is not None or style != "summary"):
+        raise click.UsageError("--mdi writes canonical commands to the terminal, and starts and stops nowhere else")
+    if options["as_macro"] and len(beside) > 1:
+        raise click.UsageError("--as-macro runs the whole file")
     if file is None:
         from aircut.cli import mdi
 

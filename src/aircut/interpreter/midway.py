@@ -7,16 +7,18 @@ Sources: 000 section 2.2.3; decisions AMB-EXE-2, AMB-NAM-8.
 
 from __future__ import annotations
 
+from typing import Any
+
 from aircut.canon import ROW
+from aircut.canon.commands import MANY, SETS
 from aircut.canon.record import Events
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter import path
 from aircut.interpreter.motion import FEED, TRAVERSE, apart
-from aircut.interpreter.offsets import tell_shift, tell_system
 from aircut.interpreter.path import Place
 from aircut.interpreter.running import Arrival, Start
-from aircut.interpreter.state import INCH, PLANES, State
+from aircut.interpreter.state import State
 from aircut.interpreter.table import Group
 
 CUTTING = ("G1", "G2", "G3")
@@ -30,9 +32,10 @@ class Midway:
         self.standing = list(start.stop.place) if start.stop else standing
         self.highest = self.standing[2]
         self.last: Place | None = None
+        self.told: dict[tuple[Any, ...], tuple[str, tuple[Any, ...]]] = {}  # the last event of each thing set
 
     def drop(self, m: State) -> None:
-        """Forget the motion so far, but for its height and its end."""
+        """Forget the motion so far, but for its height and its end; of the events, what they set stays known."""
         import numpy as np
 
         from aircut.canon.toolpath import Toolpath
@@ -46,6 +49,12 @@ class Midway:
         out.place = out.end()
         out.rows = bytearray()
         out.contour = bytearray()
+        for event in out.events:
+            what = SETS.get(event.name)
+            if what is not None:
+                key = (what, event.values[0]) if what in MANY else (what,)
+                self.told.pop(key, None)  # the last comes last
+                self.told[key] = event.name, event.values
         out.events = Events()
         out.marks = [0] * len(out.marks)
 
@@ -61,7 +70,7 @@ class Midway:
         self.drop(m)
         m.out.first = 0
         m.restarted = [*m.position]
-        tell(m)
+        self.tell(m)
         goal = self.last if "rtcp" in m.stages and self.last is not None else m.to_space(m.position)
         top = max(self.highest, goal[2])
         above = [*goal[:2], top, *goal[3:]]
@@ -83,30 +92,11 @@ class Midway:
         told = f"T{m.tool} F{m.feed / m.unit:g} S{m.speed:g}"
         return Arrival(line, tuple(m.position), modes, told, tuple(approach))
 
-
-def tell(m: State) -> None:
-    """Write down the modes in force, as far as they differ from those at the start of a run."""
-    out = m.out
-    if m.unit == INCH:
-        out.event("USE_LENGTH_UNITS", "INCHES")
-    tell_system(m)
-    tell_shift(m)
-    if m.plane:
-        out.event("SELECT_PLANE", PLANES[m.plane])
-    if m.tool:
-        out.event("CHANGE_TOOL_NUMBER", m.tool)
-    if m.selected_tool != m.tool:
-        out.event("SELECT_TOOL", m.selected_tool)
-    if any(m.tool_offset):
-        out.event("USE_TOOL_LENGTH_OFFSET", *m.tool_offset, 0.0, 0.0, 0.0)
-    if m.speed:
-        out.event("SET_SPINDLE_SPEED", 0, m.speed)
-    if m.spindle != 5:
-        turning = {3: "START_SPINDLE_CLOCKWISE", 4: "START_SPINDLE_COUNTERCLOCKWISE"}
-        out.event(turning[m.spindle], 0)
-    if m.mist:
-        out.event("MIST_ON")
-    if m.flood:
-        out.event("FLOOD_ON")
-    if m.feed and not m.inverse_time:
-        out.event("SET_FEED_RATE", m.feed)
+    def tell(self, m: State) -> None:
+        """Write down what is in force; the tool is in the spindle already."""
+        for name, values in self.told.values():
+            m.out.event(name, *values)
+        if m.tool:
+            m.out.event("CHANGE_TOOL_NUMBER", m.tool)
+        if m.selected_tool != m.tool:
+            m.out.event("SELECT_TOOL", m.selected_tool)

@@ -197,9 +197,13 @@ class Flow:
             self.skip(label, "endwhile")
 
     def endwhile(self, line: OLine, name: str, sought: bool = False) -> None:
+        self.end_loop("while", line, name, sought)
+
+    def end_loop(self, kind: str, line: OLine, name: str, sought: bool) -> None:
+        """Back to the top of a loop; sought: by `continue`, or by what skips it. Raises Refusal."""
         if not sought:
             self.nothing(line)
-            mark = self.opened(self.scoped(name), ("while",), line)
+            mark = self.opened(self.scoped(name), (kind,), line)
         elif not self.continuing:
             return
         else:
@@ -226,15 +230,7 @@ class Flow:
             self.skip(label, "endrepeat")
 
     def endrepeat(self, line: OLine, name: str, sought: bool = False) -> None:
-        if not sought:
-            self.nothing(line)
-            mark = self.opened(self.scoped(name), ("repeat",), line)
-        elif not self.continuing:
-            return
-        else:
-            self.continuing = False
-            mark = self.marks[self.scoped(name)]
-        self.run.jump(mark.text, mark.line)
+        self.end_loop("repeat", line, name, sought)
 
     def break_(self, line: OLine, name: str, sought: bool = False) -> None:
         self.nothing(line)
