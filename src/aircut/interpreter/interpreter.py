@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, NoReturn
 from aircut.canon import CHUNK, ROW, Chunk
 from aircut.diagnostics import Fault, Frame, Refusal, Severity, Span
 from aircut.diagnostics import faults as F
-from aircut.interpreter import compensation, macros, path, starting
+from aircut.interpreter import compensation, macros, path, starting, unrun
 from aircut.interpreter.arranging import Steps, arrange, code_name, find
 from aircut.interpreter.auxiliary import End, Restart
 from aircut.interpreter.calls import ARGUMENTS, Call, Return
@@ -134,7 +134,7 @@ class Interpreter(Run):
             except Stopped:
                 m.out.drop()
             yield from switched_off(m)
-            self.check_rest()
+            unrun.check(self)
         if self.midway is not None:
             self.midway.drop(m)
             m.out.first = 0
@@ -220,70 +220,6 @@ class Interpreter(Run):
         m.transfer = self.talk = None
         m.exact_stop = m.machine_frame = False
         path.flush(m)
-
-    def check_rest(self) -> None:
-        """Lines that did not run are still read, so that one run shows all faults of form."""
-        self.check_ends(self.units[self.files[0]])
-        for unit in self.units.values():
-            line = unit.seen.find(0)
-            while line >= 0:
-                if unit.source.classes[line] != BLANK and self.in_program(unit, line):
-                    self.check_line(unit, line)
-                line = unit.seen.find(0, line + 1)
-            for line, refusal in unit.encoding:
-                self.tell_refusal(refusal, unit, line, stack=False)
-        self.diagnostics.sort(key=lambda d: (d.file != self.files[0], d.file, d.span.line))
-
-    def check_ends(self, unit: Unit) -> None:
-        """Subroutines of the program that were never called want an end as well (AMB-CALL-3)."""
-        for routine in unit.structure.routines.values():
-            if any(unit.seen[routine.first : routine.end]):
-                continue  # it has run, and would have been found out
-            if not any(self.leads_out(unit, line) for line in range(routine.first, routine.end)):
-                refusal = Refusal(F.NO_SUBROUTINE_END, name=routine.name)
-                self.tell_refusal(refusal, unit, routine.declared, stack=False)
-
-    def leads_out(self, unit: Unit, line: int) -> bool:
-        """Whether a line can return from its routine, or end the program; one at fault might."""
-        try:
-            if unit.source.classes[line] == BLANK:
-                return False
-            shape = self.shape(unit, line)
-            if shape is not None:
-                names = shape.codes
-            else:
-                statement, _ = unit.statement(line)
-                if not isinstance(statement, Statement):
-                    return False
-                if statement.moving or (statement.block.jump and statement.block.jump.kind == "return"):
-                    return True
-                names = statement.codes
-        except Refusal:
-            return True
-        rows = [self.dialect.codes[name] for name in names if name in self.dialect.codes]
-        return any(row.group & (Group.RETURN | Group.STOP) for row in rows)
-
-    def in_program(self, unit: Unit, line: int) -> bool:
-        order = unit.structure.order
-        return order[0].first <= line < order[-1].end
-
-    def check_line(self, unit: Unit, line: int) -> None:
-        """Tell what is wrong with the form of a line: its text, its codes, its words."""
-        try:
-            shape = self.shape(unit, line)
-            if shape is not None:
-                codes, letters = shape.codes, shape.letters
-            else:
-                statement, _ = unit.statement(line)
-                if not isinstance(statement, Statement) or statement.moving:
-                    return
-                codes, letters = statement.codes, statement.letters
-            motion = self.dialect.codes["g1"]
-            rows = [find(name, self.dialect, name[0]) for name in codes]
-            arrange(rows, letters, motion, self.dialect, self.state.axes + "xyzabc")
-        except Refusal as refusal:
-            if refusal.fault is not F.UNUSED_WORD:  # that depends on the modes in force
-                self.tell_refusal(refusal, unit, line, stack=False)
 
     def blocks(self) -> Generator[Chunk | Request, Any, None]:
         """The main loop: each turn of the outer one enters a routine, each of the inner one runs a line."""
