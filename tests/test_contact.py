@@ -186,6 +186,15 @@ def test_clear_by_hand(request, shape, start, end, radius, length):
         assert not shape.touches(at(start, end, part), radius)
 
 
+def test_a_way_of_one_last_bit():
+    """Its slope to the body is the smallest number there is, and nothing when divided."""
+    sheet, corners = Box((-1, 0, 0), (-1, 0, 0)), box_mesh((-2, -1, -1), (-1, 0, 0))
+    for shape in (sheet, Mesh(corners)):
+        assert shape.touch((0, 2, 0), (-5e-324, 2, 0), 0) is None
+        assert shape.clear((0, 2, 0), (-5e-324, 2, 0), 0) == 0.0
+        assert shape.clear((0, 2, 0), (-5e-324, 2, 0), 5) is None
+
+
 def test_union_goes_on_to_the_last_contact():
     steps = Union([Box((0, 0, 0), (10, 10, 10)), Box((10, 0, 0), (20, 10, 5)), Sphere((40, 5, 5), 3)])
     assert steps.touch((-10, 5, 2), (50, 5, 2), 1) == pytest.approx(9 / 60)

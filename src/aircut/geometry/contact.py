@@ -99,7 +99,8 @@ def approach(excess: Excess, start: Vector, move: Vector, radius: float) -> floa
             break
         if gap <= SKIN and entered is None:
             entered = part
-        slope = away[0] * move[0] + away[1] * move[1] + away[2] * move[2]
+        # Divided before it is looked at: the smallest of slopes becomes 0 by it.
+        slope = (away[0] * move[0] + away[1] * move[1] + away[2] * move[2]) / distance
         if slope >= 0.0:
             if entered is None:
                 return None
@@ -110,7 +111,6 @@ def approach(excess: Excess, start: Vector, move: Vector, radius: float) -> floa
             break
         if entered is not None:
             falling = part
-        slope /= distance
         aim = INNER_SKIN if gap > SKIN else 0.0
         following = min(part - (gap - aim) / slope, 1.0)
         if (following - part) * length < LAST_STEP:

@@ -403,6 +403,7 @@ def sweep(
                     if gap <= skin and not hit:
                         hit = True
                         entered = u
+                    slope = slope / distance  # before it is looked at: the smallest become 0 by it
                     if slope >= 0.0:
                         if not hit or falling < 0.0:
                             break
@@ -413,7 +414,6 @@ def sweep(
                         break
                     if hit:
                         falling = u
-                    slope = slope / distance
                     following = u - (gap - inner if gap > skin else gap) / slope
                     if following > 1.0:
                         following = 1.0
