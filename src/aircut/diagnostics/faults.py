@@ -74,6 +74,12 @@ BAD_VALUE = Fault("bad-value", "{word}{value:g} is out of range: {wanted}")
 NOT_INTEGER = Fault("not-integer", "{word}{value:g} must be a whole number")
 MISPLACED_LABEL = Fault("misplaced-label", "N must be the first word of a block")
 MISPLACED_WORDS = Fault("misplaced-words", "only a comment may follow {what}")
+OTHER_LANGUAGE = Fault(
+    "other-language",
+    "{word} is a statement of LinuxCNC's language",
+    "run the program with the dialect linuxcnc; here subroutines are O1000 … M99, loops WHILE [ ] DO1 … END1",
+    why="Programs of LinuxCNC name and number their statements by O-words, which here declare subroutines alone.",
+)
 MISFIT = Fault("misfit", "{code} works with {fits} only, not with {motion}")
 
 # --- Expressions and variables

@@ -33,6 +33,11 @@ LETTERS = "abcdefghijklmpqrstuvwxyz@^"  # of words; n and o are not among them
 KEYWORD = re.compile(r"(goto|break|return|endsub|call(?=[a-z]|$|\x01))")
 #: No word begins so, but for I with FIX or FUP behind it.
 MARK = re.compile(r"(elif|if(?!ix\[|up\[)|else|endsub|end|while|sub|o(?=[\d\"]|$|\x01))")
+#: What LinuxCNC's language writes where this one declares a subroutine.
+O_WORD = re.compile(
+    r"o(?:<[^>]*>|\d+|\[.*?\]|#\d+)"
+    r"(sub|endsub|call|return|if|elseif|else|endif|while|endwhile|do|repeat|endrepeat|break|continue)(?![\d\"])"
+)
 DIGITS = re.compile(r"\d+")
 LABEL = re.compile(r"(/?)\x01*(?:n(\d*))?")
 
@@ -126,6 +131,8 @@ class LineParser(Parser):
         start = self.at
         self.at = match.end()
         kind = match[1]
+        if foreign := O_WORD.match(self.code, start):
+            raise Refusal(F.OTHER_LANGUAGE, where=foreign.span(), word=f"O-{foreign[1].upper()}")
         if kind in ("o", "sub"):
             return self.subroutine(start, kind)
         if kind in ("else", "end"):
@@ -218,6 +225,8 @@ class LineParser(Parser):
 
     def illegal(self, character: str) -> Refusal:
         where = (self.at, self.at + 1)
+        if foreign := O_WORD.match(self.code, self.at):
+            return Refusal(F.OTHER_LANGUAGE, where=foreign.span(), word=f"O-{foreign[1].upper()}")
         if character == "n":
             return Refusal(F.MISPLACED_LABEL, where=where)
         if character == "/":
