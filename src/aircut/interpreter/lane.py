@@ -10,8 +10,10 @@ from array import array
 from typing import TYPE_CHECKING
 
 from aircut.canon import CHUNK
+from aircut.interpreter import tipping
 from aircut.interpreter.path import RECORDER
 from aircut.interpreter.table import AXES
+from aircut.interpreter.tipping import Tipping
 from aircut.kernels import plain
 from aircut.source import POWERS
 
@@ -33,12 +35,13 @@ class Lane:
         self.feeds = array("d", [0.0] * FEW)
         self.feed_places = array("q", [0] * (2 * FEW))
         self.motions = [m.dialect.codes[name.lower()] for name in MOTIONS]
+        self.tipping = Tipping()
         m.out.room = kept
 
     def open(self, m: State) -> bool:
         """Whether plain motion means here what the kernel knows."""
         return (
-            m.way is RECORDER
+            (m.way is RECORDER or tipping.alone(m) is not None)
             and m.frame is None
             and m.macro is None
             and not m.polar
@@ -48,12 +51,29 @@ class Lane:
 
     def letters(self, m: State) -> int:
         """Axes that may be named, by bits; rotary ones only where nothing is particular about them."""
-        turning = m.rollover or m.indexers or m.surface_feed or m.unit != 1.0
+        surface = m.surface_feed and m.way is RECORDER  # under tool center point control F is that already
+        turning = m.rollover or m.indexers or surface or m.unit != 1.0
         return sum(1 << i for i, axis in enumerate(AXES) if axis in m.axes and (i < 3 or not turning))
 
     def run(self, m: State, source: Source, line: int, end: int) -> int:
         """Run lines from `line` up to `end` as far as they go; returns the one to go on with."""
+        control = tipping.alone(m)
+        if control is not None:
+            return self.tipping.run(self, m, control, source, line, end)
         out = m.out
+        low, high = m.bounds()
+        self.prepare(m, line, array("d", low + high))
+        self.read(source, end, out.space(min(end - line, CHUNK)))
+        after = self.numbers[plain.LINE]
+        if after > line:
+            rows = self.numbers[plain.ROWS]
+            self.settle(m, after)
+            out.fill(rows, FEW)
+            self.tell(m, out.moves - rows)
+        return after
+
+    def prepare(self, m: State, line: int, box: array[float]) -> None:
+        """Tell the kernel where the state stands. box: lowest and highest places, six each."""
         numbers, reals = self.numbers, self.reals
         numbers[plain.LINE] = line
         assert m.motion is not None
@@ -63,33 +83,36 @@ class Lane:
         numbers[plain.PLANE] = m.plane
         numbers[plain.FLAGS] = m.flags
         numbers[plain.TOOL] = m.tool
-        numbers[plain.FILE] = out.file
+        numbers[plain.FILE] = m.out.file
         numbers[plain.AXES] = self.letters(m)
         numbers[plain.RADIUS] = numbers[plain.ALONE] = True
         reals[plain.POSITION : plain.OFFSET] = array("d", m.position)
         reals[plain.OFFSET : plain.LOW] = array("d", m.offset)
-        low, high = m.bounds()
-        reals[plain.LOW : plain.HIGH] = array("d", low)
-        reals[plain.HIGH : plain.UNIT] = array("d", high)
+        reals[plain.LOW : plain.UNIT] = box
         reals[plain.UNIT] = m.unit
         reals[plain.FEED] = m.feed
-        space = out.space(min(end - line, CHUNK))
+
+    def read(self, source: Source, end: int, space: memoryview) -> None:
+        """Let the kernel read lines, up to `end` at most, and write rows into the space."""
         plain.run(
-            source.data, source.starts, min(end, source.ended), numbers, reals, space.cast("d"), space.cast("q"),
-            self.feeds, self.feed_places, POWERS, plain.PLACES,
+            source.data, source.starts, min(end, source.ended), self.numbers, self.reals, space.cast("d"),
+            space.cast("q"), self.feeds, self.feed_places, POWERS, plain.PLACES,
         )  # fmt: skip
-        after = numbers[plain.LINE]
-        if after > line:
-            m.position = list(reals[plain.POSITION : plain.OFFSET])
-            m.feed = reals[plain.FEED]
-            out.fill(numbers[plain.ROWS], FEW)
-            if told := numbers[plain.FEEDS]:
-                m.feed_told = m.feed
-                first = out.moves - numbers[plain.ROWS]
-                rows, lines = self.feed_places[: 2 * told : 2], self.feed_places[1 : 2 * told : 2]
-                out.tell_feeds([first + row for row in rows], lines, self.feeds[:told])
-            m.line = out.line = after
-        return after
+
+    def settle(self, m: State, after: int) -> None:
+        """Bring the state up to date; `after` is the line to go on with."""
+        m.position = list(self.reals[plain.POSITION : plain.OFFSET])
+        m.feed = self.reals[plain.FEED]
+        m.line = m.out.line = after
+
+    def tell(self, m: State, first: int, firsts: array[int] | None = None) -> None:
+        """Tell the feeds met. first: the first move of the stretch. firsts: where rows became many: theirs."""
+        if told := self.numbers[plain.FEEDS]:
+            m.feed_told = m.feed
+            rows, lines = self.feed_places[: 2 * told : 2], self.feed_places[1 : 2 * told : 2]
+            if firsts is not None:
+                rows = array("q", [firsts[row] for row in rows])
+            m.out.tell_feeds([first + row for row in rows], lines, self.feeds[:told])
 
     @property
     def motion(self) -> int:
