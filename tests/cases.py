@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import msgspec
 
 import aircut
+from aircut import dialects
 from aircut.api import Result
 from aircut.diagnostics import Severity
 from aircut.interpreter.running import Limits
@@ -21,6 +23,7 @@ OPENING = 6  # lines of a listing before the program's own
 TOLERANCE = 1e-4  # numbers of the listing
 PAIR = re.compile(r"(\w[\w ]*?):\s+(.*?)(?=\s{2,}\w+:\s|$)")
 COMMAND = re.compile(r"([A-Z][A-Z0-9_]*)\((.*?)\)(?=\s|$)")
+NUMBERED = re.compile(r" {0,4}\d+ N[\d. \t/]*")
 VALUE = re.compile(r"#(<[^>]+>|\d+)\s*=\s*(null|[-+.\dEeinfa]+)")
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
@@ -39,6 +42,15 @@ class Case:
     @property
     def covers(self) -> list[str]:
         return self.head.get("covers", "").split()
+
+    @property
+    def dialect(self) -> str:
+        return self.head.get("dialect", "rosetta")
+
+    @property
+    def programs(self) -> list[str]:
+        """The case's programs, each run by itself."""
+        return re.split(r"^===[ \t]*\n", self.program, flags=re.MULTILINE)
 
 
 def read(path: Path) -> Case:
@@ -70,7 +82,12 @@ def all_cases() -> list[Path]:
 def machine(case: Case, folder: Path) -> Machine:
     for name, text in case.files.items():
         (folder / name).write_text(text, "utf-8")
-    made = load(folder) if "machine.toml" in case.files else built_in(case.head.get("axes", "XYZ"))
+    if "machine.toml" in case.files:
+        made = load(folder)
+    elif "axes" not in case.head and case.dialect != "rosetta":
+        made = dialects.machine(dialects.load(case.dialect))
+    else:
+        made = built_in(case.head.get("axes", "XYZ"))
     if "error-on-missing-feed" in case.head.get("options", ""):
         made.options = msgspec.structs.replace(made.options, missing_feed="error")
     if entry := re.search(r"entry=(\w+)", case.head.get("options", "")):
@@ -92,28 +109,44 @@ def machine(case: Case, folder: Path) -> Machine:
     return made
 
 
-def run(case: Case, folder: Path) -> Result:
+def run(case: Case, folder: Path) -> list[Result]:
+    """Run the programs of a case. Where flow is not known before it runs, the first error ends a run."""
     options = case.head.get("options", "")
     budget = re.search(r"max-blocks=(\d+)", options)
     limits = Limits(blocks=int(budget[1])) if budget else Limits()
-    program = aircut.loads(case.program, case.head.get("dialect", "rosetta"), case.path.name)
-    return program.run(
-        machine(case, folder), keep_going=True, limits=limits,
-        block_delete="block-delete" in options, optional_stop="optional-stop" in options,
-    )  # fmt: skip
+    results = []
+    for text in case.programs:
+        program = aircut.loads(text, case.dialect, case.path.name)
+        results.append(program.run(
+            machine(case, folder), keep_going=case.dialect == "rosetta", limits=limits,
+            block_delete="block-delete" in options, optional_stop="optional-stop" in options,
+        ))  # fmt: skip
+    return results
 
 
-def compare(case: Case, result: Result) -> list[str]:
+def compare(case: Case, results: list[Result]) -> list[str]:
     """What differs from the case, in words; empty when nothing does."""
-    return [*compare_faults(case, result), *compare_listing(case, result), *compare_values(case, result)]
+    show = case.head.get("show", "motion")
+    listed = [command for result in results for command in listing(result.canon(), show)]
+    faults = [
+        wrong
+        for text, result in zip(case.programs, results, strict=True)
+        for wrong in compare_faults(case, text, result)
+    ]
+    return [*faults, *compare_listing(case, listed), *compare_values(case, results[-1])]
 
 
-def compare_faults(case: Case, result: Result) -> list[str]:
-    wanted = []
-    for at, line in enumerate(case.program.splitlines(), 1):
-        for kind, text in re.findall(r"\b(fault|warning):\s+([^;)]*)", line):
-            code, _, words = text.strip().partition(" ")
-            wanted.append((at, "error" if kind == "fault" else "warning", code, words.strip()))
+def announced(program: str) -> list[tuple[int, str, str, str]]:
+    """Line, severity, code and words of the diagnostics that a program's comments tell of."""
+    return [
+        (at, "error" if kind == "fault" else "warning", code, words.strip())
+        for at, line in enumerate(program.split("\n"), 1)
+        for kind, code, words in re.findall(r"\b(fault|warning):\s+([^\s;)]*)([^;)]*)", line)
+    ]
+
+
+def compare_faults(case: Case, program: str, result: Result) -> list[str]:
+    wanted = announced(program)
     wrong = []
     given = [d for d in result.diagnostics if d.file == case.path.name]
     left = list(given)
@@ -132,17 +165,17 @@ def compare_faults(case: Case, result: Result) -> list[str]:
     return wrong
 
 
-def listing(result: Result, show: str) -> list[str]:
-    lines = [line.rstrip("\n")[13:].lstrip() for line in result.canon()][OPENING:-2]
+def listing(lines: Iterable[str], show: str) -> list[str]:
+    """What a case shows of a listing, without its number columns."""
+    kept = [NUMBERED.sub("", line.rstrip("\n")).lstrip() for line in lines][OPENING:-2]
     if show == "all":
-        return lines
+        return kept
     names = MOTION if show == "motion" else set(show.replace(",", " ").split())
-    return [line for line in lines if line.split("(")[0] in names]
+    return [line for line in kept if line.split("(")[0] in names or ("PRINT" in names and "(" not in line)]
 
 
-def compare_listing(case: Case, result: Result) -> list[str]:
+def compare_listing(case: Case, given: list[str]) -> list[str]:
     wanted = [line for line in case.expected if not line.lstrip().startswith("#")]
-    given = listing(result, case.head.get("show", "motion"))
     wrong = [
         f"command {at}: expected {w.strip()!r}, got {g!r}"
         for at, (w, g) in enumerate(zip(wanted, given, strict=False), 1)
@@ -157,7 +190,9 @@ def compare_listing(case: Case, result: Result) -> list[str]:
 def same(wanted: str, given: str) -> bool:
     """Whether a listing line is as expected: same name and texts, same numbers but for zeros left out."""
     w, g = COMMAND.search(wanted), COMMAND.search(given)
-    if w is None or g is None or w[1] != g[1]:
+    if w is None or g is None:  # what is printed has no name
+        return wanted.rstrip() == given.rstrip()
+    if w[1] != g[1]:
         return False
     if NUMBER.sub("0", w[2]) != NUMBER.sub("0", g[2]) and ('"' in g[2] or "CANON" in g[2]):
         return False

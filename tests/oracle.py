@@ -6,7 +6,9 @@ import random
 import re
 import shutil
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 PROGRAM = shutil.which("rs274")
 AXES = "XYZABC"
@@ -15,20 +17,38 @@ SYSTEMS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
 NUMBER = re.compile(r"-?\d+\.\d+")
 
 
-def ask(text: str, folder: Path) -> tuple[list[str], bool]:
-    """The oracle's listing of a program, and whether it accepted it. folder: its own, to write in."""
+class Answer(NamedTuple):
+    """What the oracle says to a program. message: what it writes beside the listing."""
+
+    listing: list[str]
+    accepted: bool
+    message: str
+
+    def names(self, line: str) -> bool:
+        """Whether it says that this line is wrong."""
+        return line.strip() in self.message
+
+
+def answer(text: str, folder: Path, options: Sequence[str] = ()) -> Answer:
+    """What the oracle says to a program. folder: its own, to write in."""
     file = folder / "program.ngc"
-    file.write_text(text)
+    file.write_text(text, newline="")
     assert PROGRAM
     done = subprocess.run(
-        [PROGRAM, "-g", str(file)],
+        [PROGRAM, *options, "-g", str(file)],
         capture_output=True,
-        text=True,
         timeout=60,
         cwd=folder,
         env={"HOME": str(folder)},
     )
-    return done.stdout.splitlines(), done.returncode == 0
+    listing, message = done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace")
+    return Answer(listing.splitlines(), done.returncode == 0, message)
+
+
+def ask(text: str, folder: Path) -> tuple[list[str], bool]:
+    """The oracle's listing of a program, and whether it accepted it."""
+    listing, accepted, _ = answer(text, folder)
+    return listing, accepted
 
 
 def differ(ours: list[str], theirs: list[str], tolerance: float = 1.0001e-4) -> str:

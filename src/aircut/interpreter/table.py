@@ -56,6 +56,7 @@ class Group(IntFlag):
     SPINDLE_MODE = auto()
     DIAMETER = auto()
     USER = auto()
+    SHIFT = auto()
 
     @property
     def title(self) -> str:
@@ -93,6 +94,7 @@ class Order(IntEnum):
     ARC_DISTANCE = auto()
     RETRACT = auto()
     NON_MODAL = auto()
+    SHIFT = auto()
     SCALING = auto()
     ROTATION = auto()
     MOTION = auto()

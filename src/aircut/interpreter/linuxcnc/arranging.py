@@ -113,7 +113,7 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
     rows = [find(name, dialect) for name in names]
     for i, row in enumerate(rows):
         for other in rows[:i]:
-            if row.group & other.group and row.weak == other.weak:
+            if row.group & other.group and not row.weak and not other.weak:
                 group = (row.group & other.group).title
                 raise Refusal(F.MODAL_CONFLICT, row.name[0].lower(), first=other.name, second=row.name, group=group)
     alone = next((row for row in rows if row.sole), None)
@@ -125,6 +125,7 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
         raise Refusal(F.POLAR_AND_AXES, "@")
     cancels = [row for row in rows if row.weak]
     rows = [row for row in rows if not (row.weak and any(o.group & row.group for o in rows if not o.weak))]
+    rows = list(dict.fromkeys(rows))  # what is weak may stand twice
     motion = next((row for row in rows if row.group & Group.MOTION and not row.weak), None)
     takers = [row for row in rows if row.axes and row is not motion]
     if motion is not None and takers:

@@ -81,8 +81,8 @@ def off(m: State, w: Words) -> None:
     if m.cutter:
         stage = m.stages.get(SLOT)
         path.flush(m)
-        m.arc_refused = True
-        path.set_stage(m, SLOT, Leaving() if getattr(stage, "entered", False) else None)
+        m.arc_refused = getattr(stage, "entered", False)
+        path.set_stage(m, SLOT, Leaving() if m.arc_refused else None)
     m.cutter = 0
     said(m, "cutter radius compensation off")
 

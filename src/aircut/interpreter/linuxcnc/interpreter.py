@@ -28,6 +28,7 @@ from aircut.interpreter.table import Dialect, Group
 from aircut.machine import Machine
 from aircut.source import Source
 
+NO_MODE = "g-0.1"  # the motion mode after a spline of points: it reads as -1
 FULL = CHUNK * ROW.size
 LITERAL = re.compile(r"(?<=[abcdefhijklpqrstuvwxyz=\[+\-*/,])(\d+\.?\d*|\.\d+)(?![\d.])")
 
@@ -167,12 +168,13 @@ class Interpreter(Run):
         if line.oline is not None:
             self.flow.step(line.oline)
             return
-        if line.code == "%" and self.percent and not (self.flow.stack and self.flow.search is None):
+        percent = line.code == "%" and source.raw(self.line).strip() == b"%"
+        if percent and self.percent and not (self.flow.stack and self.flow.search is None):
             self.close()
         if self.flow.search is not None:
             return
         if line.code == "%":
-            raise Refusal(F.MISPLACED_PERCENT)
+            raise Refusal(F.MISPLACED_PERCENT, where=(0, 1))
         self.block(line)
 
     def block(self, line: Line) -> None:
@@ -235,7 +237,7 @@ class Interpreter(Run):
             m.numbered[number] = value
 
     def perform(self, steps: Steps, words: dict[str, float]) -> None:
-        """Carry out the codes of a block in order. Raises Refusal."""
+        """Carry out the codes of a block in order; what M72 brings back stands in place of the rest. Raises Refusal."""
         m = self.state
         m.codes = steps.codes
         m.words = words
@@ -244,7 +246,7 @@ class Interpreter(Run):
         for row in steps.codes:
             if row.nameless:
                 self.modal = self.dialect.codes["g80"]
-                m.motion_name = "g80"
+                m.motion_name = NO_MODE
             elif row.modal:
                 self.modal = row
                 m.motion_name = row.name.lower()
@@ -253,9 +255,10 @@ class Interpreter(Run):
             if row.group is Group.STOP:
                 path.flush(m)
             row.run(m, words)
-        if m.transfer is not None:
-            transfer, m.transfer = m.transfer, None
-            transfer(self)
+            if m.transfer is not None:
+                transfer, m.transfer = m.transfer, None
+                if transfer(self):
+                    return
 
     def carry_out(self, names: list[str], words: dict[str, float]) -> None:
         """Run codes that no line has written. Raises Refusal."""

@@ -10,6 +10,7 @@ from functools import partial
 
 from aircut.interpreter.linuxcnc.state import LINEAR, NINE, State
 from aircut.interpreter.table import NamedParameter
+from aircut.machine.tools import EMPTY
 
 TENTHS = 10
 SYSTEMS = (540, 550, 560, 570, 580, 590, 591, 592, 593)
@@ -31,6 +32,11 @@ def code(name: str) -> float:
 def machine(i: int, m: State) -> float:
     place = m.machine_position()[i]
     return place / m.unit if i in LINEAR else place
+
+
+def pocket(m: State, slot: int) -> int:
+    """The pocket that the tool in a slot came from, -1 where there is none."""
+    return -1 if slot < 0 or m.slots[slot] is EMPTY else m.slots[slot].slot
 
 
 def shown(i: int, m: State) -> float:
@@ -72,9 +78,9 @@ NAMED = (
     value("_feed", "F", lambda m: m.gave_feed),
     value("_rpm", "S", lambda m: m.speed),
     value("_current_tool", "tool in the spindle", lambda m: m.slots[0].id),
-    value("_current_pocket", "its pocket", lambda m: m.slots[m.slot].slot if m.slot else -1),
+    value("_current_pocket", "its pocket", lambda m: pocket(m, m.slot)),
     value("_selected_tool", "tool of T", lambda m: m.selected_tool),
-    value("_selected_pocket", "its pocket", lambda m: m.slots[m.selected_slot].slot if m.selected_slot > 0 else -1),
+    value("_selected_pocket", "its pocket", lambda m: pocket(m, m.selected_slot)),
     *(NamedParameter(f"_{a}", f"position {a.upper()}", partial(shown, i)) for i, a in enumerate(NINE)),
     *(
         NamedParameter(f"_abs_{a}", f"machine position {a.upper()}", partial(machine, i))

@@ -236,6 +236,7 @@ def tell_tool(m: State, slot: int) -> None:
 
 
 single = partial(Code, group=Group.NON_MODAL, order=Order.NON_MODAL)
+shift = partial(Code, group=Group.SHIFT, order=Order.SHIFT)
 setting = partial(Code, group=Group.NON_MODAL, order=Order.NON_MODAL)
 SYSTEM_NAMES = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
 
@@ -244,9 +245,9 @@ CODES = (
     single("G10", "Set offsets or tools", settings, axes=True, takes="lpijkqr", check=check_settings),
     single("G52", "Local offset", set_local, axes=True, needs_axes=True),
     single("G92", "Let the position read as given", set_here, axes=True, needs_axes=True),
-    single("G92.1", "Clear and forget G92", partial(clear_shift, True)),
-    single("G92.2", "Suspend G92", partial(clear_shift, False)),
-    single("G92.3", "Restore G92", restore_shift),
+    shift("G92.1", "Clear and forget G92", partial(clear_shift, True)),
+    shift("G92.2", "Suspend G92", partial(clear_shift, False)),
+    shift("G92.3", "Restore G92", restore_shift),
 )
 
 SETTINGS = {

@@ -11,7 +11,7 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.linuxcnc.arranging import whole
 from aircut.interpreter.linuxcnc.motion import wrong
-from aircut.interpreter.linuxcnc.state import State
+from aircut.interpreter.linuxcnc.state import INPUT, State
 from aircut.interpreter.table import Code, Group, Order, Words
 
 
@@ -42,7 +42,7 @@ def analog(event: str, m: State, w: Words) -> None:
 
 
 def wait(m: State, w: Words) -> None:
-    """M66: prints nothing. Raises Refusal."""
+    """M66: prints nothing; #5399 of a digital input becomes whether it was not zero. Raises Refusal."""
     bar(m)
     if ("p" in w) == ("e" in w):
         raise wrong("M66 needs P or E, and not both")
@@ -54,6 +54,8 @@ def wait(m: State, w: Words) -> None:
     if "e" in w and kind:
         raise wrong("M66 E takes only L0")
     index(w, "p" if "p" in w else "e")
+    if "p" in w:
+        m.numbered[INPUT] = float(m.numbered[INPUT] != 0.0)
 
 
 def unknown(number: int, m: State, w: Words) -> None:

@@ -70,7 +70,8 @@ def restore(m: State, w: Words) -> None:
     """M72. Raises Refusal."""
     if m.saved is None:
         raise wrong("there is nothing saved here to restore")
-    m.transfer = lambda run: bring_back(run, m.saved)
+    saved = m.saved
+    m.transfer = lambda run: bring_back(run, saved)
 
 
 def restore_call(run: Interpreter) -> None:
@@ -80,12 +81,13 @@ def restore_call(run: Interpreter) -> None:
         bring_back(run, saved)
 
 
-def bring_back(run: Interpreter, saved: Saved) -> None:
-    """Put back what differs."""
+def bring_back(run: Interpreter, saved: Saved) -> bool:
+    """Put back what differs. Returns whether anything did: then that stands in place of the rest of the block."""
     m = run.state
     line, m.out.line = m.out.line, 0
     now = snapshot(m)
-    if now.units != saved.units:
+    differs = now.units != saved.units
+    if differs:
         run.carry_out([saved.units], {})
         now = snapshot(m)
     names = [saved.modes[mode] for mode in saved.modes if saved.modes[mode] != now.modes[mode]]
@@ -99,9 +101,11 @@ def bring_back(run: Interpreter, saved: Saved) -> None:
         words["p"], words["q"] = saved.blending
     if names or words:
         run.carry_out(names, words)
-    for name in switches(saved, now):
+    switched = switches(saved, now)
+    for name in switched:
         run.carry_out([name], {})
     m.out.line = line
+    return bool(differs or names or words or switched)
 
 
 def switches(saved: Saved, now: Saved) -> list[str]:

@@ -80,6 +80,8 @@ def quadratic(m: State, w: Words) -> None:
 
 def collect(m: State, w: Words) -> None:
     """G5.2: a control point and its weight. Raises Refusal."""
+    if m.feed_mode != 93 and m.gave_feed <= 0.0:
+        raise Refusal(F.MISSING_FEED)
     named = "x" in w or "y" in w
     if named and not ("x" in w and "y" in w):
         raise wrong("a control point needs X and Y")

@@ -13,7 +13,6 @@ from aircut.interpreter.linuxcnc.motion import wrong
 from aircut.interpreter.linuxcnc.state import NUMBERED_NINE, State
 from aircut.interpreter.state import EQUAL
 from aircut.interpreter.table import Code, Group, Order, Words
-from aircut.machine.tools import EMPTY
 
 
 def select_tool(m: State, w: Words) -> None:
@@ -26,7 +25,7 @@ def select_tool(m: State, w: Words) -> None:
 
 
 def change(m: State, w: Words) -> None:
-    """M6: load the selected tool. Raises Refusal."""
+    """M6: load the selected tool; of tool 0, what was in the spindle stays there. Raises Refusal."""
     if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="a tool change")
     slot = max(m.selected_slot, 0)
@@ -34,10 +33,7 @@ def change(m: State, w: Words) -> None:
     m.out.event("STOP_SPINDLE_TURNING", 0)
     m.spindle = 5
     m.out.event("CHANGE_TOOL", slot)
-    if slot:
-        m.slots[0] = m.slots[slot]
-    else:
-        m.slots[0] = EMPTY
+    m.slots[0] = m.slots[slot]
     load(m, slot)
 
 
