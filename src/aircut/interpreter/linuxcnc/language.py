@@ -22,7 +22,6 @@ from aircut.interpreter.linuxcnc import (
 from aircut.interpreter.linuxcnc.interpreter import Interpreter
 from aircut.interpreter.linuxcnc.named import NAMED
 from aircut.interpreter.linuxcnc.state import LAST
-from aircut.interpreter.state import INCH
 from aircut.interpreter.table import Code, CutterRules, Dialect
 from aircut.machine.tools import Tool
 
@@ -47,11 +46,13 @@ def key(row: Code) -> str:
 
 
 #: The tools that the stand-alone interpreter starts with, mm.
+#: mm, as the interpreter converts its own tools: an entry exactly as long as their radius is long enough.
+THEIR_INCH = 1 / 0.03937007874016
 TOOLS = (
-    Tool(1, slot=1, z=0.511 * INCH, diameter=0.125 * INCH),
-    Tool(2, slot=2, z=0.1 * INCH, diameter=0.0625 * INCH),
-    Tool(3, slot=3, z=1.273 * INCH, diameter=0.201 * INCH),
-    Tool(99999, slot=123, z=0.1 * INCH),
+    Tool(1, slot=1, z=0.511 * THEIR_INCH, diameter=0.125 * THEIR_INCH),
+    Tool(2, slot=2, z=0.1 * THEIR_INCH, diameter=0.0625 * THEIR_INCH),
+    Tool(3, slot=3, z=1.273 * THEIR_INCH, diameter=0.201 * THEIR_INCH),
+    Tool(99999, slot=123, z=0.1 * THEIR_INCH),
 )
 
 LINUXCNC = Dialect(
