@@ -24,8 +24,8 @@ SEEDS = range(250)
 def ours(text: str) -> tuple[list[str], Interpreter]:
     """Our listing of a program, up to the error if there is one."""
     run = Interpreter(Source("program", text.encode()), contours.dialect(), built_in("XYZABC"))
-    listing = Listing(lambda file, line: b"")
-    return [line.rstrip("\n") for chunk in run.run() for line in listing.write(chunk)], run
+    listing = Listing(lambda file: run.units[run.files[file]].source)
+    return "".join(piece for chunk in run.run() for piece in listing.write(chunk)).splitlines(), run
 
 
 def told(text: str, folder: Path) -> tuple[list[str], str]:

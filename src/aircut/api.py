@@ -10,6 +10,7 @@ print(result.extents, len(result.toolpath))
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -178,13 +179,9 @@ class Result:
         """The canonical listing, line by line."""
         from aircut.export.listing import Listing
 
-        listing = Listing(raw_lines(self.sources, self.files))
-        return listing.write(Chunk(0, self.toolpath.to_numpy().tobytes(), self.events))
-
-
-def raw_lines(sources: dict[str, Source], files: list[str]) -> Any:
-    """(file index, line from 1) -> bytes of that line."""
-    return lambda file, line: sources[files[file]].raw(line - 1)
+        listing = Listing(lambda file: self.sources[self.files[file]])
+        for piece in listing.write(Chunk(0, self.toolpath.to_numpy().tobytes(), self.events)):
+            yield from StringIO(piece, newline="\n")
 
 
 class Program:

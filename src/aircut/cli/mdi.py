@@ -16,6 +16,7 @@ from aircut.export.listing import Listing
 from aircut.interpreter.mdi import Session
 from aircut.interpreter.table import AXES, Dialect
 from aircut.language.arithmetic import FUNCTIONS
+from aircut.source import Source
 
 if TYPE_CHECKING:
     from aircut.controller import Simulation
@@ -43,17 +44,18 @@ class Desk:
             raise click.UsageError(f"MDI is not in this version of the {dialect.name} dialect")
         self.session = Session(dialect, self.machine, common.settings(options, False, False))
         self.simulation: Simulation | None = running.simulated(self.session.interpreter, options)
-        self.listing = Listing(self.raw)
-        self.listing.count = sum(1 for _ in self.listing.write(self.session.opening))
+        self.listing = Listing(self.text)
+        self.listing.count = "".join(self.listing.write(self.session.opening)).count("\n")
 
     @property
     def state(self) -> State:
         return self.session.interpreter.state
 
-    def raw(self, file: int, line: int) -> bytes:
-        """Text of a line, for the listing's labels."""
-        units = self.session.interpreter.units
-        return bytes(units[self.session.interpreter.files[file]].source.raw(line - 1))
+    def text(self, file: int) -> Source:
+        """The text of a file, for the listing's labels."""
+        running = self.session.interpreter
+        source: Source = running.units[running.files[file]].source
+        return source
 
     def run(self, command: str) -> bool:
         """Run a command and write the canonical commands that it makes; whether it was free of errors."""

@@ -121,7 +121,7 @@ def listing(made: Run, simulation: Simulation | None) -> Iterable[str]:
     """The canonical listing, written as the run goes."""
     from aircut.export.listing import Listing
 
-    text = Listing(lambda file, line: made.units[made.files[file]].source.raw(line - 1))
+    text = Listing(lambda file: made.units[made.files[file]].source)
     with common.progress(f"running {Path(made.files[0]).name}") as advance:
         for chunk in (simulation or made).run():
             yield from text.write(chunk)

@@ -9,15 +9,22 @@ those of the tip: a straight move has one line, an arc one for each chord.
 from __future__ import annotations
 
 import re
+from array import array
 from collections.abc import Callable, Iterator, Mapping
 from math import cos, radians, sin
+from typing import TYPE_CHECKING
 
 from aircut.canon import BY_HAND, COMMANDS, PART, ROW, TIP, TOLD, Chunk, Event, Kind
 from aircut.canon.commands import WRITTEN
 from aircut.geometry.arcs import PLANE_AXES
 from aircut.geometry.kinematics import Setup, forward
+from aircut.kernels import printing
+
+if TYPE_CHECKING:
+    from aircut.source import Source
 
 INCH = 25.4  # mm
+BUFFER = 1 << 20  # bytes of text that are made at a time
 NO_NUMBER = "N..... "
 LABEL = re.compile(rb"^[ \t/]*[nN](\d*)")
 STRAIGHT = {
@@ -36,10 +43,11 @@ def label(raw: bytes) -> str:
 
 
 class Listing:
-    """Writes chunks of a run as text. raw: (file index, line from 1) -> bytes of that line."""
+    """Writes chunks of a run as text. text: file index -> its Source."""
 
-    def __init__(self, raw: Callable[[int, int], bytes]) -> None:
-        self.raw = raw
+    def __init__(self, text: Callable[[int], Source]) -> None:
+        self.text = text
+        self.buffer = bytearray(BUFFER)
         self.count = 0
         self.unit = 1.0  # mm a program unit
         self.setup = Setup(0)
@@ -82,19 +90,44 @@ class Listing:
         return u * c + v * s + self.work[0], v * c - u * s + self.work[1]
 
     def write(self, chunk: Chunk) -> Iterator[str]:
-        """The lines of a chunk, each with its line end."""
-        events = iter(chunk.events)
-        event = next(events, None)
-        for at, row in enumerate(ROW.iter_unpack(chunk.rows), chunk.first):
-            while event is not None and event.at <= at:
-                yield from self.event(event)
-                event = next(events, None)
-            flags = int(row[15])
-            if not flags & (BY_HAND | PART | TOLD):
-                yield self.move(self.tip(row) if flags & TIP else row)
-        while event is not None:
+        """The text of a chunk, in pieces that end with a line."""
+        rows = memoryview(chunk.rows)
+        at = 0
+        for event in chunk.events:
+            if event.at - chunk.first > at:
+                yield from self.moves(rows, at, event.at - chunk.first)
+                at = event.at - chunk.first
             yield from self.event(event)
-            event = next(events, None)
+        yield from self.moves(rows, at, len(rows) // ROW.size)
+
+    def moves(self, rows: memoryview, first: int, last: int) -> Iterator[str]:
+        """The text of the rows from `first` to before `last`."""
+        reals = array("d", [w + s for w, s in zip(self.work, self.shift, strict=True)])
+        turned = float(self.rotation != 0.0)
+        reals.extend((self.unit, self.work[0], self.work[1], cos(self.rotation), sin(self.rotation), turned))
+        doubles, marks = rows.cast("d"), rows.cast("q")
+        while first < last:
+            file = ROW.unpack_from(rows, first * ROW.size)[12]
+            source = self.text(file)
+            numbers = array("q", (first, 0, self.count, file, last))
+            printing.moves(
+                doubles, marks, source.data, source.starts, numbers, reals, self.buffer, printing.HEADS, printing.PAIRS
+            )
+            self.count = numbers[printing.COUNT]
+            if numbers[printing.USED]:
+                yield self.buffer[: numbers[printing.USED]].decode("ascii")
+            if numbers[printing.ROW] == first:
+                yield self.row(ROW.unpack_from(rows, first * ROW.size))
+                first += 1
+            else:
+                first = numbers[printing.ROW]
+
+    def row(self, row: tuple[float, ...]) -> str:
+        """The line of one row; empty where it has none."""
+        flags = int(row[15])
+        if flags & (BY_HAND | PART | TOLD):
+            return ""
+        return self.move(self.tip(row) if flags & TIP else row)
 
     def unrotated(self, row: tuple[float, ...]) -> tuple[float, ...]:
         values = list(row)
@@ -109,7 +142,7 @@ class Listing:
         self.count += 1
         known = self.labels.get((file, line))
         if known is None:
-            known = label(self.raw(file, line)) if line else NO_NUMBER
+            known = label(self.text(file).raw(line - 1)) if line else NO_NUMBER
             if len(self.labels) < 100_000:
                 self.labels[file, line] = known
         return "%5d %s%s\n" % (self.count, known, text)

@@ -33,4 +33,5 @@ if os.environ.get("AIRCUT_PYTHON_KERNELS"):
     lookahead = twin("lookahead", "aircut.kernels.lookahead")
     thin = twin("thin", "aircut.kernels.thin")
     follow = twin("follow", "aircut.kernels.follow")
+    printing = twin("printing", "aircut.kernels.printing")
     scurve = twin("scurve", "aircut.kernels.scurve")
