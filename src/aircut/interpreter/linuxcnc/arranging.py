@@ -122,7 +122,7 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
     axes = [letter for letter in letters if letter in AXIS_WORDS]
     polar = "@" in letters or "^" in letters
     if polar and ("x" in letters or "y" in letters):
-        raise Refusal(F.POLAR_AND_AXES, "@")
+        raise Refusal(F.POLAR_AND_AXES, "x" if "x" in letters else "y")
     cancels = [row for row in rows if row.weak]
     rows = [row for row in rows if not (row.weak and any(o.group & row.group for o in rows if not o.weak))]
     rows = list(dict.fromkeys(rows))  # what is weak may stand twice

@@ -36,7 +36,7 @@ from aircut.language.text import COMMENT
 LETTERS = frozenset("abcdefghijklmpqrstuvwxyz@^$")
 KEYWORD = re.compile("endsub|sub|call|return|elseif|else|endif|if|endwhile|while|do|endrepeat|repeat|break|continue")
 LABEL = re.compile(r"/?(?:n(\d+)(?:\.\d*)?)?")
-START = re.compile(r"/?(?:n\d+\.?\d*)?\x01*o")
+START = re.compile(r"/?(?:n\d+\.?\d*)?o")
 ANY_NAME = re.compile(r"[^>]*")
 DIRECT = 5399  # numbered parameters up to this one are read as they are stored
 ENVIRONMENT = {
@@ -152,6 +152,12 @@ def compiled(*nodes: Expression) -> Callable[..., tuple[float, ...]]:
     return build(writer, compiling.tuple_text([writer.expression(node)[0] for node in nodes]))
 
 
+def checked(node: Expression) -> Callable[..., Any]:
+    """The function (state, literals) -> value of one expression, which must be a finite number."""
+    writer = Writer(None)  # type: ignore[arg-type]  # this language's variables need no table
+    return build(writer, writer.write(node))
+
+
 class Block(NamedTuple):
     """A compiled line of words and settings."""
 
@@ -159,7 +165,6 @@ class Block(NamedTuple):
     values: Callable[..., tuple[float, ...]]  # of the words, then of the settings, then of computed targets
     #: Of the settings: a number, a name, or None where it is computed; then the place of that among the values.
     targets: tuple[tuple[int | str | None, int], ...]
-    number: bool  # it has an N
 
 
 class OLine(NamedTuple):
@@ -167,7 +172,22 @@ class OLine(NamedTuple):
 
     label: str | Callable[..., tuple[float, ...]]  # a name, or a function of the number
     keyword: str  # "" for a bare number, "?" for what is none
-    rest: str
+    code: str  # of the line, without the comments at its end
+    end: int  # of the keyword in it
+
+    @property
+    def rest(self) -> str:
+        """What follows the keyword."""
+        return self.code[self.end :]
+
+
+class Item(NamedTuple):
+    """A word or a setting as written."""
+
+    letter: str  # "" of a setting
+    target: Variable | Name | None  # of a setting
+    value: Expression
+    where: tuple[int, int]
 
 
 def parse_o(code: str) -> OLine | None:
@@ -175,6 +195,7 @@ def parse_o(code: str) -> OLine | None:
     start = START.match(code)
     if start is None:
         return None
+    code = code.rstrip(COMMENT)
     parser = ValueParser(code)
     parser.at = start.end()
     label: str | Callable[..., tuple[float, ...]]
@@ -188,23 +209,31 @@ def parse_o(code: str) -> OLine | None:
             label = compiled(node)
     keyword = KEYWORD.match(code, parser.at)
     if keyword is None:
-        if rest := code[parser.at :].strip(COMMENT):
-            return OLine(label, "?", rest)
-        return OLine(label, "", "")
-    return OLine(label, keyword[0], code[keyword.end() :].replace(COMMENT, ""))
+        return OLine(label, "" if code[parser.at :][:1] in ("", COMMENT) else "?", code, parser.at)
+    return OLine(label, keyword[0], code, keyword.end())
 
 
-def arguments(rest: str, least: int, most: int) -> Callable[..., tuple[float, ...]]:
-    """The function of the values in brackets behind a keyword. Raises Refusal."""
-    parser = ValueParser(rest)
+def brackets(line: OLine, least: int, most: int) -> list[Expression]:
+    """The values in brackets behind a keyword. Raises Refusal."""
+    parser = ValueParser(line.code)
+    parser.at = line.end
+    while most > 1 and parser.take(COMMENT):  # between the values of a call
+        pass
     nodes: list[Expression] = []
-    while len(nodes) < most and rest.startswith("[", parser.at):
+    while len(nodes) < most and line.code.startswith("[", parser.at):
         nodes.append(parser.brackets().arguments[0])  # not checked here
+        while most > 1 and parser.take(COMMENT):
+            pass
     if len(nodes) < least:
         raise parser.expected("[expression]")
-    if parser.at < len(rest):
-        raise Refusal(F.MISPLACED_WORDS, what="an O-word")
-    return compiled(*nodes)
+    if parser.at < len(line.code):
+        raise Refusal(F.MISPLACED_WORDS, where=(parser.at, len(line.code)), what="an O-word")
+    return nodes
+
+
+def arguments(line: OLine, least: int, most: int) -> Callable[..., tuple[float, ...]]:
+    """The function of the values in brackets behind a keyword. Raises Refusal."""
+    return compiled(*brackets(line, least, most))
 
 
 def check_number(code: str) -> int:
@@ -220,17 +249,11 @@ def check_number(code: str) -> int:
     return at
 
 
-def parse(code: str, shape: bool = False) -> Block:
-    """A clean line of words and settings, compiled. shape: numbers are written as `?`. Raises Refusal."""
+def read(code: str, shape: bool = False) -> list[Item]:
+    """The words and settings of a clean line. shape: numbers are written as `?`. Raises Refusal."""
     parser = ValueParser(code, shape)
     parser.at = check_number(code)
-    number = "n" in code[: parser.at]
-    letters: list[str] = []
-    words: list[Expression] = []
-    targets: list[tuple[int | str | None, int]] = []
-    settings: list[Expression] = []
-    places: list[Expression] = []
-    new: list[str] = []  # names that exist from here on
+    items: list[Item] = []
     while parser.at < len(code):
         start = parser.at
         character = code[start]
@@ -238,33 +261,47 @@ def parse(code: str, shape: bool = False) -> Block:
             parser.at += 1
         elif character in LETTERS:
             parser.at += 1
-            letters.append(character)
-            words.append(parser.value())
+            value = parser.value()
+            items.append(Item(character, None, value, (start, parser.at)))
         elif character == "#":
             target = parser.variable()
             if not parser.take("="):
                 raise parser.expected("=")
-            settings.append(parser.value())
-            place = -1
-            if isinstance(target, Name):
-                name = str(target.parts[0])
-                targets.append((name, place))
-                if code.find(f"#<{name}>") == start:
-                    new.append(name)
-            elif isinstance(target.number, Number) and target.number.value == int(target.number.value):
-                targets.append((int(target.number.value), place))
-            else:
-                targets.append((None, len(places)))
-                places.append(target.number)
+            value = parser.value()
+            items.append(Item("", target, value, (start, parser.at)))
         else:
             raise parser.expected("a word or a setting")
+    return items
+
+
+def parse(code: str, shape: bool = False) -> Block:
+    """A clean line of words and settings, compiled. shape: numbers are written as `?`. Raises Refusal."""
+    items = read(code, shape)
+    words = [item for item in items if item.target is None]
+    settings = [item for item in items if item.target is not None]
+    targets: list[tuple[int | str | None, int]] = []
+    places: list[Expression] = []
+    new: list[str] = []  # names that exist from here on
+    for item in settings:
+        target = item.target
+        if isinstance(target, Name):
+            name = str(target.parts[0])
+            targets.append((name, -1))
+            if code.find(f"#<{name}>") == item.where[0]:
+                new.append(name)
+        elif isinstance(target, Variable):
+            number = target.number
+            if isinstance(number, Number) and number.value == int(number.value):
+                targets.append((int(number.value), -1))
+            else:
+                targets.append((None, len(places)))
+                places.append(number)
     writer = Writer(None)  # type: ignore[arg-type]  # this language's variables need no table
     writer.steps += [f"    m.create({name!r})" for name in new]
-    nodes = [writer.write(node) for node in (*words, *settings, *places)]
-    first = len(words) + len(settings)
+    nodes = [writer.write(node) for node in (*(item.value for item in (*words, *settings)), *places)]
+    first = len(items)
     return Block(
-        tuple(letters),
+        tuple(item.letter for item in words),
         build(writer, compiling.tuple_text(nodes)),
         tuple((target, first + place) for target, place in targets),
-        number,
     )

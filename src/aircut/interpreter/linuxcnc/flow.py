@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.linuxcnc.arranging import whole
-from aircut.interpreter.linuxcnc.blocks import OLine, arguments
+from aircut.interpreter.linuxcnc.blocks import OLine, arguments, brackets
+from aircut.interpreter.linuxcnc.places import EVALUATION, explained
 from aircut.interpreter.linuxcnc.saving import restore_call
 from aircut.interpreter.linuxcnc.state import LOCALS
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 DEEPEST = 9  # calls in calls
 LOOPS = ("while", "do")
+KINDS = "O… SUB is for CALL, a bare O… for M98"
 BRANCHES = ("elseif", "else", "endif")
 
 
@@ -113,10 +115,12 @@ class Flow:
         search = self.search
         assert search is not None
         if search.call:
+            if name == search.label and line.keyword == "?":
+                self.unknown(line, name)
             if name == search.label and line.keyword in ("", "sub"):
                 self.enter_found(line, name, search)
             return
-        if line.keyword == "sub" and search.kinds == ("endsub",):
+        if line.keyword in ("", "sub") and search.kinds == ("endsub",):
             raise refuse("a subroutine inside a subroutine")
         if line.keyword == "?" and search.kinds != ("endsub",):
             self.unknown(line, name)
@@ -129,12 +133,17 @@ class Flow:
     def values(self, line: OLine, least: int, most: int) -> tuple[float, ...]:
         known = self.run.argument_cache.get(line)
         if known is None:
-            known = self.run.argument_cache[line] = arguments(line.rest, least, most)
-        return known(self.run.state, ())
+            known = self.run.argument_cache[line] = arguments(line, least, most)
+        try:
+            return known(self.run.state, ())
+        except EVALUATION as failure:
+            raise explained(brackets(line, least, most), self.run.state, failure) from None
 
     def nothing(self, line: OLine) -> None:
         if line.rest:
-            raise Refusal(F.MISPLACED_WORDS, what=f"O … {line.keyword.upper()}")
+            where = (line.end, len(line.code))
+            what = f"O … {line.keyword.upper()}" if line.keyword else "an O-word"
+            raise Refusal(F.MISPLACED_WORDS, where=where, what=what)
 
     def skip(self, label: str, *kinds: str) -> None:
         self.search = Search(label, kinds=kinds)
@@ -298,7 +307,7 @@ class Flow:
         known = self.marks.get(name)
         if known is not None:
             if known.kind != ("o" if fanuc else "sub"):
-                raise refuse(f"{name} is not for this kind of call", "O… SUB is for CALL, a bare O… for M98")
+                raise refuse(f"{name} is not for this kind of call", KINDS)
             run.jump(known.text, known.line + 1)
             return
         self.search = Search(name, True, fanuc, (run.unit, run.line))
@@ -308,9 +317,15 @@ class Flow:
 
     def enter_found(self, line: OLine, name: str, search: Search) -> None:
         if (line.keyword == "") != search.fanuc:
-            raise refuse(f"{name} is not for this kind of call", "O… SUB is for CALL, a bare O… for M98")
+            raise refuse(f"{name} is not for this kind of call", KINDS)
         self.search = None
         self.marks[name] = Mark("o" if search.fanuc else "sub", self.run.unit, self.run.line)
+
+    def give_up(self) -> None:
+        """A call has found nothing: go on behind it."""
+        self.search = None
+        self.run.state.saved = None
+        self.leave()
 
     def leave(self) -> None:
         """Go back to the caller."""
@@ -326,7 +341,10 @@ class Flow:
         run.jump(level.text, level.line)
 
     def bare(self, line: OLine, name: str, sought: bool = False) -> None:
-        """A number alone: where M98 enters; nothing to do when it is run into."""
+        """A number alone: where M98 enters; nothing to do when it is run into, but in a subroutine of CALL."""
+        self.nothing(line)
+        if self.stack and not self.stack[-1].fanuc:
+            raise refuse(f"{name} is not for this kind of call", KINDS)
 
     def m98(self, name: str, count: int) -> None:
         """M98: call a bare number, so many times. Raises Refusal."""
@@ -349,7 +367,9 @@ class Flow:
         return True
 
     def unknown(self, line: OLine, name: str, sought: bool = False) -> None:
-        raise Refusal(F.EXPECTED, wanted="an O-word such as CALL or IF", found=f"“{line.rest[:12]}”", hint="")
+        where = (line.end, len(line.code))
+        found = f"“{line.rest[:12]}”"
+        raise Refusal(F.EXPECTED, where=where, wanted="an O-word such as CALL or IF", found=found, hint="")
 
     WORDS: dict[str, Callable[..., None]] = {
         "": bare, "?": unknown, "sub": sub_, "endsub": endsub, "call": call_, "return": return_,

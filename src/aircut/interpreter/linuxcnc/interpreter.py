@@ -15,9 +15,9 @@ from aircut.diagnostics import Frame, Refusal, Severity, Span
 from aircut.diagnostics import faults as F
 from aircut.interpreter import path
 from aircut.interpreter.compiling import FAILURES
-from aircut.interpreter.linuxcnc import starting
+from aircut.interpreter.linuxcnc import places, starting, unrun
 from aircut.interpreter.linuxcnc.arranging import Steps, arrange, check_values, gather
-from aircut.interpreter.linuxcnc.blocks import Block, OLine, check_number, parse, parse_o
+from aircut.interpreter.linuxcnc.blocks import Block, OLine, check_number, parse, parse_o, read
 from aircut.interpreter.linuxcnc.comments import say
 from aircut.interpreter.linuxcnc.flow import Flow
 from aircut.interpreter.linuxcnc.state import State
@@ -25,11 +25,13 @@ from aircut.interpreter.linuxcnc.text import check, clean
 from aircut.interpreter.requests import Request
 from aircut.interpreter.running import Run, Settings, Stopped
 from aircut.interpreter.table import Dialect, Group
+from aircut.language.text import COMMENT
 from aircut.machine import Machine
 from aircut.source import Source
 
 NO_MODE = "g-0.1"  # the motion mode after a spline of points: it reads as -1
 FULL = CHUNK * ROW.size
+FATAL = (F.BLOCK_BUDGET, F.ABORTED)
 LITERAL = re.compile(r"(?<=[abcdefhijklpqrstuvwxyz=\[+\-*/,])(\d+\.?\d*|\.\d+)(?![\d.])")
 
 
@@ -84,6 +86,7 @@ class Interpreter(Run):
         self.steps: dict[Any, Steps] = {}
         self.argument_cache: dict[OLine, Any] = {}
         self.percent = False
+        self.broken = False  # the run ended before its end, in the main program
         self.found: dict[str, Text | None] = {}
         self.repeated = 0
         self.modal = dialect.codes["g80"]
@@ -99,9 +102,7 @@ class Interpreter(Run):
     def tell_refusal(self, refusal: Refusal) -> None:
         text = self.unit
         frames = tuple(Frame(level.label, level.text.source.name, level.line) for level in self.flow.stack)
-        span = Span()
-        if self.line < len(text.source):
-            span = Span(self.line + 1, 1, len(text.source.text(self.line)) + 1)
+        span = places.span(text.source, self.line, refusal) if self.line < len(text.source) else Span()
         self.tell(refusal.fault.at(text.source.name, span, frames, **refusal.values))
 
     # --- the run
@@ -123,6 +124,8 @@ class Interpreter(Run):
             yield from self.lines()
         except Stopped:
             pass
+        if self.settings.keep_going:
+            unrun.check(self, self.broken)
         m.out.drop()
         m.out.line = 0
         m.out.event("ON_RESET")
@@ -137,16 +140,17 @@ class Interpreter(Run):
             self.line = self.next_line
             if self.line >= len(self.unit.source):
                 self.run_off()
+                continue
             self.next_line = self.line + 1
             m.line = out.line = self.line + 1
             try:
                 self.step()
             except Refusal as refusal:
                 self.tell_refusal(refusal)
-                raise Stopped from None
+                self.go_on(refusal)
             except FAILURES:
                 self.tell_refusal(Refusal(F.NO_VALUE))
-                raise Stopped from None
+                self.go_on(None)
             if m.finished:
                 self.finish()
             if len(out.rows) >= FULL:
@@ -155,6 +159,15 @@ class Interpreter(Run):
                     self.warn(F.OUTPUT_LIMIT, limit=limit)
                     raise Stopped
                 yield out.take()
+
+    def go_on(self, refusal: Refusal | None) -> None:
+        """After an error: go on with the next line where that is asked for and safe. Raises Stopped."""
+        if not self.settings.keep_going or (refusal is not None and refusal.fault in FATAL):
+            raise Stopped from None
+        if unrun.O_WORD.match(self.unit.source.raw(self.line)):  # nobody knows what would follow
+            self.broken = not self.flow.stack
+            raise Stopped from None
+        self.state.transfer = None
 
     def step(self) -> None:
         """Run a line. Raises Refusal."""
@@ -187,7 +200,10 @@ class Interpreter(Run):
         block = line.block
         if block is None:
             block = self.compile(line)
-        values = block.values(m, line.literals)
+        try:
+            values = block.values(m, line.literals)
+        except places.EVALUATION as failure:
+            raise places.explained(places.values_of(read(line.code)), m, failure) from None
         if block.letters:
             names, words = gather(block.letters, values, self.dialect)
             key = (tuple(names), tuple(words), self.modal.name)
@@ -198,9 +214,13 @@ class Interpreter(Run):
         else:
             steps, words = None, {}
         if block.targets:
-            self.settle(block, values)
+            self.settle(block, line.code, values)
         if line.comment is not None:
-            say(m, line.comment)
+            try:
+                say(m, line.comment)
+            except Refusal as refusal:
+                refusal.where = (line.code.rindex(COMMENT), len(line.code))
+                raise
         if steps is not None:
             self.perform(steps, words)
 
@@ -225,15 +245,20 @@ class Interpreter(Run):
         line.block = block
         return block
 
-    def settle(self, block: Block, values: tuple[float, ...]) -> None:
+    def settle(self, block: Block, code: str, values: tuple[float, ...]) -> None:
         """Assign what the block sets. Raises Refusal."""
         m = self.state
-        for (target, place), value in zip(block.targets, values[len(block.letters) :], strict=False):
-            if isinstance(target, str):
-                m.write_name(target, value)
-                continue
-            number = m.number_of(values[place]) if target is None else target
-            m.check_write(number)
+        settings = zip(block.targets, values[len(block.letters) :], strict=False)
+        for nth, ((target, place), value) in enumerate(settings):
+            try:
+                if isinstance(target, str):
+                    m.write_name(target, value)
+                    continue
+                number = m.number_of(values[place]) if target is None else target
+                m.check_write(number)
+            except Refusal as refusal:
+                refusal.where = places.target_of(code, nth)
+                raise
             m.numbered[number] = value
 
     def perform(self, steps: Steps, words: dict[str, float]) -> None:
@@ -254,7 +279,11 @@ class Interpreter(Run):
                 m.cycle = None
             if row.group is Group.STOP:
                 path.flush(m)
-            row.run(m, words)
+            try:
+                row.run(m, words)
+            except Refusal as refusal:
+                refusal.values.setdefault("code", row.name)  # the word to show
+                raise
             if m.transfer is not None:
                 transfer, m.transfer = m.transfer, None
                 if transfer(self):
@@ -278,16 +307,18 @@ class Interpreter(Run):
         self.next_line = line
 
     def run_off(self) -> None:
-        """The file has no more lines. Raises Stopped."""
+        """The file has no more lines: a call that found nothing is passed over in a check. Raises Stopped."""
         flow = self.flow
         if flow.search is not None and flow.search.call and flow.search.where:
             self.unit, self.line = flow.search.where
             refusal = Refusal(F.NO_SUBROUTINE, name=flow.search.label, hint="")
+            flow.give_up()
         else:
             self.line = max(len(self.unit.source) - 1, 0)
             refusal = Refusal(F.END_MISSING)
         self.tell_refusal(refusal)
-        raise Stopped
+        if refusal.fault is F.END_MISSING or not self.settings.keep_going:
+            raise Stopped
 
     def close(self) -> None:
         """A second percent sign. Raises Stopped."""

@@ -49,6 +49,20 @@ def clean(text: str, length: int) -> Clean:
     return Clean(joined, comment)
 
 
+def columns(text: str) -> list[int]:
+    """For each character of the clean line (and for its end) its index in the line as written."""
+    places: list[int] = []
+    for piece in PIECES.finditer(text):
+        if piece[3] is not None:
+            places += [at for at in range(*piece.span()) if text[at] not in BLANKS]
+        elif piece[1] is not None:
+            places.append(piece.start())
+        elif piece[2] is not None:
+            break
+    places.append(places[-1] + 1 if places else len(text.rstrip()))
+    return places
+
+
 def check(code: str) -> None:
     """Refuse characters that no line holds outside comments. Raises Refusal."""
     if strange := STRANGE.search(code):
