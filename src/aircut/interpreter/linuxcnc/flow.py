@@ -114,16 +114,14 @@ class Flow:
         """An O-word among lines that are passed over."""
         search = self.search
         assert search is not None
+        if line.keyword == "?" and search.kinds != ("endsub",):
+            self.unknown(line, name)
         if search.call:
-            if name == search.label and line.keyword == "?":
-                self.unknown(line, name)
             if name == search.label and line.keyword in ("", "sub"):
                 self.enter_found(line, name, search)
             return
         if line.keyword in ("", "sub") and search.kinds == ("endsub",):
             raise refuse("a subroutine inside a subroutine")
-        if line.keyword == "?" and search.kinds != ("endsub",):
-            self.unknown(line, name)
         label = name if line.keyword == "endsub" else self.scoped(name)
         if label != search.label or line.keyword not in search.kinds:
             return
