@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+import aircut
 from aircut.machine import MachineError, load
 from aircut.planner import Overrides, PlanError, Regime, limits, plan_moves
 from planning import machine, planned, toolpath
@@ -190,3 +191,27 @@ def test_a_plan_is_a_table():
     assert made.to_arrow(0.01).num_rows == len(made.sample(0.01).time)
     with pytest.raises(ValueError, match="above zero"):
         made.sample(0.0)
+
+
+def test_a_plan_made_stretch_by_stretch_is_the_same(monkeypatch):
+    """Cut where the axes stand, at whatever move that is; and not where they do not."""
+    from aircut.planner import planning
+
+    lines = ["G21 G90 G17 F3000", "G0 X1", "G61"]
+    for i in range(40):
+        lines += [f"G1 X{i} Y{i % 3} Z{i % 2 / 9}", f"X{i + 0.3} Y{i % 3 + 0.01}", f"X{i + 0.7}", "X0.5 Y0.5", "X0.5"]
+        lines += {7: ["G64 P0.1"], 15: ["G4 P1", "M3 S100"], 22: ["G104 P100 R200 J50"], 30: ["G3 X5 Y5 R9"]}.get(i, [])
+    recording = aircut.loads("\n".join([*lines, "M2", ""])).run().recording
+    for jerk in (0.0, 5000.0):
+        on = machine(9000, 500, jerk)
+        whole = planning.plan(recording, on)
+        for most in (1, 2, 7, 50):
+            with monkeypatch.context() as patch:
+                patch.setattr(planning, "MOVES", most)
+                made = planning.plan(recording, on)
+            assert made.duration == pytest.approx(whole.duration, abs=1e-9)
+            assert made.until == pytest.approx(whole.until, abs=1e-9)
+            assert made.path.length.tobytes() == whole.path.length.tobytes()
+            assert made.path.move.tobytes() == whole.path.move.tobytes()
+            for column, other in zip(made.profile, whole.profile, strict=True):
+                assert column == pytest.approx(other, abs=1e-9, rel=1e-9)

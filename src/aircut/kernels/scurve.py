@@ -41,20 +41,16 @@ def ramp_length(low: cython.double, high: cython.double, accel: cython.double, j
 
 @cython.cfunc
 @cython.cdivision(True)
-def reach(low: cython.double, length: cython.double, accel: cython.double, jerk: cython.double) -> cython.double:
-    """Highest speed to which a ramp from a speed leads within a length."""
-    least: cython.double = low
-    most: cython.double = sqrt(low * low + 2.0 * accel * length)
-    middle: cython.double
-    for _ in range(60):
-        middle = (least + most) / 2.0
-        if ramp_length(low, middle, accel, jerk) <= length:
-            least = middle
-        else:
-            most = middle
-        if most - least <= 1e-15 * most:
-            break
-    return least
+def ramp_slope(low: cython.double, high: cython.double, accel: cython.double, jerk: cython.double) -> cython.double:
+    """By how much a ramp is longer for each unit that its upper speed is higher."""
+    change: cython.double = high - low
+    root: cython.double
+    if change <= 0.0:
+        return 0.0
+    if change * jerk < accel * accel:
+        root = sqrt(change / jerk)
+        return root + (low + high) / (2.0 * jerk * root)
+    return high / accel + accel / (2.0 * jerk)
 
 
 @cython.cfunc
@@ -68,22 +64,45 @@ def peak(
     jerk: cython.double,
     most: cython.double,
 ) -> cython.double:
-    """Highest top, at most `most`, of a span; the ramp between first and last fits into its length."""
-    least: cython.double = first if first > last else last
-    middle: cython.double
-    if most <= least:
-        return least
+    """Highest top, at most `most`, of a span; the ramp between first and last fits into its length.
+
+    Newton's method in the square root of the top's height over both ends: in that the length is convex, so
+    the way down to the root is steady. A bracket guards it; the result is never above the root.
+    """
+    base: cython.double = first if first > last else last
+    if most <= base:
+        return base
     if ramp_length(first, most, accel, jerk) + ramp_length(last, most, decel, jerk) <= length:
         return most
-    for _ in range(60):
-        middle = (least + most) / 2.0
-        if ramp_length(first, middle, accel, jerk) + ramp_length(last, middle, decel, jerk) <= length:
-            least = middle
+    least: cython.double = base
+    top: cython.double = most
+    gap: cython.double
+    slope: cython.double
+    root: cython.double
+    for _ in range(100):
+        gap = ramp_length(first, top, accel, jerk) + ramp_length(last, top, decel, jerk) - length
+        slope = ramp_slope(first, top, accel, jerk) + ramp_slope(last, top, decel, jerk)
+        if gap > 0.0:
+            most = top
         else:
-            most = middle
+            least = top
+            if -gap <= 1e-15 * top * slope:
+                break
         if most - least <= 1e-15 * most:
             break
+        root = sqrt(top - base)
+        root -= gap / (2.0 * root * slope)
+        top = (base + root * root) * 0.9999999999999996
+        if not (root > 0.0 and least < top < most):
+            top = (least + most) / 2.0
     return least
+
+
+@cython.cfunc
+def reach(low: cython.double, length: cython.double, accel: cython.double, jerk: cython.double) -> cython.double:
+    """Highest speed to which a ramp from a speed leads within a length."""
+    most: cython.double = sqrt(low * low + 2.0 * accel * length)
+    return peak(low, low, 2.0 * length, accel, accel, jerk, most)
 
 
 @cython.cfunc
@@ -111,8 +130,6 @@ def ramp_at(
     one: cython.double = low * ends + jerk * ends * ends * ends / 6.0
     speed: cython.double = low + top * ends / 2.0
     two: cython.double = one + speed * middle + top * middle * middle / 2.0
-    least: cython.double
-    most: cython.double
     t: cython.double
     gap: cython.double
     v: cython.double
@@ -131,24 +148,25 @@ def ramp_at(
     if way <= 0.0:
         found[1] = begin
         return total if backward else 0.0
-    least = 0.0
-    most = ends
-    t = ends / 2.0
-    for _ in range(80):
-        gap = begin * t + bend * t * t * t / 6.0 - way
-        if gap <= 1e-16 * way and gap >= -1e-16 * way:
-            break
+    # Newton's method. Its first guess comes from the speed alone, or from the jerk alone where that leads farther:
+    # the root is next to one of them, and on the side from which the way there is steady.
+    t = ends
+    if begin * ends > way:
+        t = way / begin
+    if not backward and bend * t * t > 6.0 * begin:
+        gap = (6.0 * way / bend) ** (1.0 / 3.0)
+        if gap < t:
+            t = gap
+    for _ in range(50):
         v = begin + bend * t * t / 2.0
-        if gap > 0.0:
-            most = t
-        else:
-            least = t
-        if v > 0.0:
-            t = t - gap / v
-        if not (v > 0.0 and least < t < most):
-            t = (least + most) / 2.0
-        if most - least <= 1e-16 * ends:
+        if not v > 0.0:
             break
+        gap = (begin * t + bend * t * t * t / 6.0 - way) / v
+        t -= gap
+        if gap <= 1e-15 * t and gap >= -1e-15 * t:
+            break
+    if t > ends:
+        t = ends
     found[1] = begin + bend * t * t / 2.0
     return total - t if backward else t
 
@@ -280,7 +298,6 @@ def spans(
     joint: cython.double[::1],
     top: cython.double[::1],
     anchor: cython.longlong[::1],
-    slow: cython.double[::1],
     out: cython.double[::1],
     first_of: cython.longlong[::1],
     until: cython.double[::1],
@@ -288,8 +305,8 @@ def spans(
     """Cut a path of n pieces into spans; returns their number.
 
     way: (n + 1,) of the joints. speed to enter: as of the pieces. joint, top: what `lookahead.trapezoids`
-    left. anchor: (n + 1,) and slow: (n + 1,) scratch. Written: out, seven columns n long end to end: first,
-    top and last speed, acceleration, deceleration, jerk, seconds; first_of: (n,) first piece of each span;
+    left. anchor: (n + 1,) scratch, and so becomes enter. Written: out, six columns n long end to end: first,
+    top and last speed, acceleration, deceleration, jerk; first_of: (n,) first piece of each span;
     until: (n,) seconds at which each piece ends.
     """
     count: cython.Py_ssize_t = speed.shape[0]
@@ -311,7 +328,8 @@ def spans(
     part: cython.double
     t0: cython.double
     longest: cython.Py_ssize_t = 1000  # anchors that a ramp may pass over, which bounds the work
-    found: cython.double[::1] = out[7 * count : 7 * count + 2]
+    found: cython.double[::1] = out[6 * count : 6 * count + 2]
+    slow: cython.double[::1] = enter  # the speed at each joint that is kept; that at the end is 0
 
     # Anchors: the joints at which a limit of speed is touched. There a span may begin.
     for k in range(count + 1):
@@ -323,7 +341,8 @@ def spans(
                 least = enter[k]
         if k == 0 or k == count or joint[k] >= least * (1.0 - 1e-12):
             anchor[anchors] = k
-            slow[k] = joint[k]
+            if k < count:
+                slow[k] = joint[k]
             anchors += 1
         else:
             slow[k] = -1.0
@@ -332,7 +351,7 @@ def spans(
     j = anchors - 1
     while j > 0:
         a = d = jj = 1e300
-        high = slow[anchor[j]]
+        high = slow[anchor[j]] if anchor[j] < count else 0.0
         i = j - 1
         done = False
         k = anchor[j]
@@ -373,7 +392,7 @@ def spans(
     # Forward: from each kept anchor to the next that a ramp reaches.
     k = 0
     for i in range(anchors):
-        if slow[anchor[i]] >= 0.0:
+        if anchor[i] == count or slow[anchor[i]] >= 0.0:
             anchor[k] = anchor[i]
             k += 1
     anchors = k
@@ -397,7 +416,7 @@ def spans(
                 if top[k] > cap:
                     cap = top[k]
                 k += 1
-            high = slow[anchor[j]]
+            high = slow[anchor[j]] if anchor[j] < count else 0.0
             length = way[anchor[j]] - way[anchor[i]]
             if high > low:
                 if ramp_length(low, high, a, jj) > length:
@@ -434,12 +453,13 @@ def spans(
                 if top[k] > cap:
                     cap = top[k]
             length = way[anchor[j]] - way[anchor[i]]
-            high = slow[anchor[j]]
+            high = slow[anchor[j]] if anchor[j] < count else 0.0
             if high > low:
                 part = reach(low, length, a, jj)
                 if part < high:
                     high = part
-            slow[anchor[j]] = high
+            if anchor[j] < count:
+                slow[anchor[j]] = high
             least = highest(anchor[i], anchor[j], low, high, a, d, jj, cap, way, speed, joint, found)
             if least < 0.0:
                 least = high if high > low else low
@@ -456,7 +476,6 @@ def spans(
         first_of[got] = anchor[i]
         for k in range(anchor[i], anchor[j]):
             until[k] = t0 + span_at(way[k + 1] - way[anchor[i]], length, low, least, high, a, d, jj, found)
-        out[6 * count + got] = until[anchor[j] - 1] - t0
         t0 = until[anchor[j] - 1]
         got += 1
         i = j

@@ -24,7 +24,8 @@ class Path:
 
     length: (n,), of the path's parameter, the length in all axes, mm and degrees. move: index of the move;
     a blend counts to the move that it ends. shape: LINE, ARC, FILLET, CURVE. offset: where on its move the
-    piece starts; of a blend, how much of each line it takes. smooth: curves without jumps of curvature.
+    piece starts; of a blend, how much of each line it takes. ways: (n + 1,), the parameter at the joints.
+    smooth: curves without jumps of curvature.
     """
 
     def __init__(
@@ -36,8 +37,13 @@ class Path:
         offset: Array,
         smooth: bool,
     ) -> None:
+        import numpy as np
+
         self.toolpath = toolpath
         self.length = length
+        self.ways = np.empty(len(length) + 1)
+        self.ways[0] = 0.0
+        np.cumsum(length, out=self.ways[1:])
         self.move = move
         self.shape = shape
         self.offset = offset

@@ -116,10 +116,10 @@ class Plan:
         self.limits = limits
         self.until = until
         self.rows = rows
-        self.ways = np.concatenate([[0.0], np.cumsum(path.length)])
+        self.ways = path.ways
         ended = np.zeros(len(path.toolpath) + 1)
         ended[path.move + 1] = until  # the last piece of a move wins
-        ended = np.maximum.accumulate(ended)
+        np.maximum.accumulate(ended, out=ended)
         self.moving = float(until[-1]) if len(until) else 0.0
         if rows is not None:
             ended = self._spread(ended, rows)
@@ -127,10 +127,14 @@ class Plan:
         self._pause_at = ended[[min(max(p.at, 0), len(toolpath)) for p in pauses]] if pauses else np.empty(0)
         self._paused = np.concatenate([[0.0], np.cumsum([p.seconds for p in pauses])])
         self.seconds: Array = np.diff(ended)
-        before = np.zeros(len(toolpath) + 1)
-        for pause in pauses:
-            before[min(pause.at, len(toolpath))] += pause.seconds
-        self.times: Array = ended[1:] + np.cumsum(before)[: len(toolpath)]
+        self.times: Array = ended[1:]
+        if pauses:
+            before = np.zeros(len(toolpath) + 1)
+            for pause in pauses:
+                before[min(pause.at, len(toolpath))] += pause.seconds
+            np.cumsum(before, out=before)
+            before[: len(toolpath)] += self.times
+            self.times = before[: len(toolpath)]
         self.duration = self.moving + float(self._paused[-1])
 
     def _spread(self, ended: Array, rows: NDArray[Any]) -> Array:
