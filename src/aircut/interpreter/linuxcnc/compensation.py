@@ -30,8 +30,12 @@ AT_ONCE = frozenset(("MESSAGE", "LOG", "PRINT", "SELECT_TOOL", "SELECT_PLANE", "
 class Beside(Nist):
     """The stage; its moves carry the line of the block that released them, as the listing has them."""
 
+    written: list[float]  # end of the last move written, machine coordinates
+
     def write(self, m: house.State, move: Move, end: Point, center: Point | None, turns: int, onward: Onward) -> None:
         super().write(m, move._replace(line=m.out.line, file=m.out.file), end, center, turns, onward)
+        self.written = move.end[:]
+        self.written[self.u], self.written[self.v] = end[0] + self.shift[0], end[1] + self.shift[1]
 
 
 def begin(m: State, side: int, radius: float, orientation: int) -> None:
@@ -82,6 +86,8 @@ def off(m: State, w: Words) -> None:
         stage = m.stages.get(SLOT)
         path.flush(m)
         m.arc_refused = getattr(stage, "entered", False)
+        if isinstance(stage, Beside) and stage.entered:
+            m.told = m.to_program(stage.written)
         path.set_stage(m, SLOT, Leaving() if m.arc_refused else None)
     m.cutter = 0
     said(m, "cutter radius compensation off")

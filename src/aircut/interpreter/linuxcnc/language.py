@@ -71,6 +71,6 @@ LINUXCNC = Dialect(
     no_variable="parameters are #1 to #5601",
     axes="XYZABC",
     parameters=range(1, LAST + 1),
-    cutter=CutterRules(straight=0.05, at_once=compensation.AT_ONCE),
+    cutter=CutterRules(straight=0.05, at_once=compensation.AT_ONCE, plunge_first=False),
     tools=TOOLS,
 )

@@ -12,7 +12,7 @@ from aircut.canon import EXACT_STOP, INVERSE_TIME, Kind
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.geometry import arcs
-from aircut.interpreter.linuxcnc.state import G28, G30, NUMBERED_NINE, PROBED, State
+from aircut.interpreter.linuxcnc.state import G28, G30, NUMBERED_NINE, PROBED, TRIPPED, State
 from aircut.interpreter.state import INCH, PLANES
 from aircut.interpreter.table import Code, Group, Order, Words
 
@@ -252,6 +252,7 @@ def probe(m: State, w: Words) -> None:
     m.out.event("TURN_PROBE_OFF")
     for i in range(9):
         m.numbered[PROBED + i] = m.shown(i)
+    m.numbered[TRIPPED] = 0.0
     span = sqrt(sum((place[i] - start[i]) ** 2 for i in (0, 1, 2)))
     if span > 0.0:
         back = [place[i] + (start[i] - place[i]) * (BACK_OFF / span) if i < 3 else place[i] for i in range(9)]

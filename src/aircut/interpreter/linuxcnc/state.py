@@ -26,7 +26,7 @@ LOCALS = 30  # of them the first ones belong to a call
 POSITION = 5420  # parameters of the present position
 READ_ONLY = (*range(5400, 5414), *range(POSITION, POSITION + 9))
 G28, G30, G92, SYSTEM, ORIGINS, STEP = 5161, 5181, 5210, 5220, 5221, 20
-PROBED = 5061
+PROBED, TRIPPED = 5061, 5070
 TOOL_DATA = 5400
 DEBUGGING = 5599
 INPUT = 5399  # what M66 read
@@ -56,7 +56,7 @@ class State(house.State):
         self.stale = False  # the position is taken from there before the next block
         self.slots: list[Tool] = [EMPTY, *machine.tools.values()]  # slot 0 is the spindle
         self.slot = 1  # of the tool in the spindle, before any change
-        self.changed: Tool | None = None  # by M6 of this block
+        self.changed: Tool | None = None  # by M6 or M61 of this block
         self.selected_slot = -1
         self.gave_feed = 0.0  # the F word in force
         self.words: dict[str, float] = {}  # of the block
@@ -76,6 +76,7 @@ class State(house.State):
         self.value = 0.0  # of the last return
         self.value_returned = False
         self.remapped = 0
+        self.defining = False  # names without a value read as 0, behind an ENDSUB that is passed over
         self.spline: list[tuple[float, float, float]] = []  # control points of G5.2: x, y, weight
         self.spline_order = 0
         self.spline_end: tuple[float, float] | None = None  # P Q of the last G5
@@ -185,6 +186,14 @@ class State(house.State):
             raise Refusal(F.NO_VARIABLE, number=number, hint=self.dialect.no_variable)
         if number in READ_ONLY:
             raise Refusal(F.READ_ONLY, what=f"#{number}", title="tool and position are only read")
+
+    def read_name(self, name: str) -> float | None:
+        try:
+            return super().read_name(name)
+        except Refusal:
+            if self.defining:
+                return 0.0
+            raise
 
     def create(self, name: str) -> None:
         """A name that a line sets can be read behind that, as 0."""

@@ -56,6 +56,7 @@ def declare(m: State, w: Words) -> None:
     m.out.event("CHANGE_TOOL_NUMBER", slot)
     m.slot = slot
     m.tool = number
+    m.changed = m.slots[slot]
     m.stale = True
 
 
@@ -73,9 +74,9 @@ def bar(m: State) -> None:
 
 
 def of_tool(m: State, w: Words) -> list[float]:
-    """Offsets of the tool that H names; without H, of the tool in the spindle. Raises Refusal."""
+    """Offsets of the tool that H names; without H, of the tool that this block brings, or of that in the spindle. Raises Refusal."""
     if "h" not in w:
-        return m.slots[0].offsets()
+        return (m.changed or m.slots[0]).offsets()
     if w["h"] < 0:
         raise Refusal(F.NO_TOOL, "h", tool=int(w["h"]))
     return m.slots[m.slot_of(int(w["h"]))].offsets()
