@@ -131,10 +131,12 @@ def test_the_kernel_and_its_twin_agree(seed: int) -> None:
         numbers[plain.ARC_ABSOLUTE] = seed % 3 == 0
         numbers[plain.PLANE] = seed % 3
         numbers[plain.AXES] = 7
-        numbers[plain.RADIUS] = numbers[plain.ALONE] = 1
+        numbers[plain.RADIUS] = 1
+        numbers[plain.ALONE] = seed % 5 % 3
         reals[plain.OFFSET] = 3.25
         reals[plain.LOW : plain.UNIT] = array("d", [-500.0] * 6 + [500.0] * 6)
         reals[plain.UNIT], reals[plain.FEED] = unit, 100.0
+        reals[plain.LEAST], numbers[plain.LONGEST] = plain.SMALL, seed % 4 and 40
         rows = bytearray(64 * 88)
         feeds, places = array("d", [0.0] * 16), array("q", [0] * 32)
         seen = []

@@ -85,12 +85,14 @@ class Lane:
         numbers[plain.TOOL] = m.tool
         numbers[plain.FILE] = m.out.file
         numbers[plain.AXES] = self.letters(m)
-        numbers[plain.RADIUS] = numbers[plain.ALONE] = True
-        reals[plain.POSITION : plain.OFFSET] = array("d", m.position)
+        numbers[plain.RADIUS] = True
+        numbers[plain.ALONE] = plain.SETS
+        reals[plain.POSITION : plain.OFFSET] = array("d", m.position[:6])
         reals[plain.OFFSET : plain.LOW] = array("d", m.offset)
         reals[plain.LOW : plain.UNIT] = box
         reals[plain.UNIT] = m.unit
         reals[plain.FEED] = m.feed
+        reals[plain.LEAST] = plain.SMALL
 
     def read(self, source: Source, end: int, space: memoryview) -> None:
         """Let the kernel read lines, up to `end` at most, and write rows into the space."""

@@ -21,18 +21,19 @@ COMPILED = cython.compiled
 # Places in `numbers`: in and out.
 LINE, ROWS, FEEDS, MOTION = 0, 1, 2, 3
 # In only.
-ABSOLUTE, ARC_ABSOLUTE, PLANE, FLAGS, TOOL, FILE, AXES, RADIUS, ALONE = 4, 5, 6, 7, 8, 9, 10, 11, 12
-NUMBERS = 13
+ABSOLUTE, ARC_ABSOLUTE, PLANE, FLAGS, TOOL, FILE, AXES, RADIUS, ALONE, LONGEST = 4, 5, 6, 7, 8, 9, 10, 11, 12, 13
+NUMBERS = 14
+SETS, STAYS = 1, 2  # of ALONE
 # Places in `reals`: position, offset, low and high limits are six each.
-POSITION, OFFSET, LOW, HIGH, UNIT, FEED = 0, 6, 12, 18, 24, 25
-REALS = 26
+POSITION, OFFSET, LOW, HIGH, UNIT, FEED, SAID, LEAST = 0, 6, 12, 18, 24, 25, 26, 27
+REALS = 28
 
 # By byte: 0-5 the axes, 6-8 I J K, 9 R, 10 F, 11 G, 12 N; 31 for all that ends a stretch.
 PLACES = bytes("xyzabcijkrfgn".find(chr(byte).lower()) & 31 if byte < 128 else 31 for byte in range(256))
 WIDTH = 11  # 8-byte places of a row
 FAR = 1e9  # as the general lane's
 MISMATCH = 0.0253  # mm: arcs whose radii differ by more are the general lane's
-SMALL = 1e-3  # mm: so are those of smaller radii
+SMALL = 1e-3  # mm: so are those of radii below LEAST, which is at least this
 LARGE = 1e8  # mm: and of larger ones
 SLACK = 1e-6  # part by which half the chord stays below an R at least
 DIGITS = 15
@@ -58,7 +59,9 @@ def run(
 
     data: the program. starts: where its lines start. numbers, reals: the modes and
     positions (see the places above), brought up to date for where it stops. AXES: letters
-    that may stand, by bits. RADIUS: whether R may; ALONE: whether G0 and G1 may stand alone.
+    that may stand, by bits. RADIUS: whether R may. ALONE: what G0 and G1 do that stand alone: 0 nothing
+    that is known here, SETS the mode, STAYS: a move to where it is.
+    LONGEST: bytes of a line, 0 without a limit. FEED: mm/min; SAID: the F word, as written.
     rows, marks: the same memory, as doubles and as integers: the packed rows; no more
     are written than there is room for. feeds, feed_places: the F words met, mm/min, each
     with its row and line; no more lines than there is room for. powers: scan.POWERS. places: PLACES.
@@ -77,18 +80,22 @@ def run(
     plane: cython.int = numbers[PLANE]
     axes: cython.int = numbers[AXES]
     by_radius: cython.bint = numbers[RADIUS]
-    alone: cython.bint = numbers[ALONE]
+    alone: cython.int = numbers[ALONE]
+    moves: cython.int
+    stays: cython.int = STAYS
     tool: cython.longlong = numbers[TOOL] << 32
     tail: cython.longlong = (numbers[FILE] << 16) | (numbers[PLANE] << 40) | (numbers[FLAGS] << 48)
     width: cython.Py_ssize_t = WIDTH
     far: cython.double = FAR
     mismatch: cython.double = MISMATCH
-    small: cython.double = SMALL
+    small: cython.double = reals[LEAST]
     large: cython.double = LARGE
     slack: cython.double = 1.0 - SLACK
     most: cython.int = DIGITS
     unit: cython.double = reals[UNIT]
     feed: cython.double = reals[FEED]
+    said: cython.double = reals[SAID]
+    longest: cython.Py_ssize_t = numbers[LONGEST]
     first: cython.int
     second: cython.int
     c: cython.int
@@ -203,6 +210,11 @@ def run(
                     fine = False
                     break
                 code = mantissa
+        if longest > 0:
+            while data[at] != 10:
+                at += 1
+            if at - starts[line] > longest:
+                break
         if not fine:
             break
         if seen & 0x0FFF == 0:  # blank, or a number alone
@@ -216,7 +228,8 @@ def run(
             break
         if seen & 1024 and not (word[10] > 0.0 and word[10] <= far):
             break
-        if seen & 0x3F:
+        moves = seen & 0x3F or (seen & 2048 and alone == stays)
+        if moves:
             if code < 0:
                 break
             for i in range(6 if seen & 0x38 else 3):
@@ -305,13 +318,15 @@ def run(
             marks[base + 10] = tail | kind
             if seen & 1024:
                 feed = number
+                said = word[10]
                 feeds[told] = number
                 feed_places[2 * told] = row
                 feed_places[2 * told + 1] = line + 1
                 told += 1
             row += 1
         elif seen & 1024:  # F without a move
-            feed = word[10] * unit
+            said = word[10]
+            feed = said * unit
             feeds[told] = feed
             feed_places[2 * told] = row
             feed_places[2 * told + 1] = line + 1
@@ -326,3 +341,4 @@ def run(
     for i in range(6):
         reals[POSITION + i] = here[i]
     reals[FEED] = feed
+    reals[SAID] = said

@@ -20,17 +20,20 @@ from aircut.interpreter.linuxcnc.arranging import Steps, arrange, check_values, 
 from aircut.interpreter.linuxcnc.blocks import Block, OLine, check_number, parse, parse_o, read
 from aircut.interpreter.linuxcnc.comments import say
 from aircut.interpreter.linuxcnc.flow import Flow
-from aircut.interpreter.linuxcnc.state import State
+from aircut.interpreter.linuxcnc.lane import Lane
+from aircut.interpreter.linuxcnc.state import FAULTS, State
 from aircut.interpreter.linuxcnc.text import check, clean
 from aircut.interpreter.requests import Request
 from aircut.interpreter.running import Run, Settings, Stopped
 from aircut.interpreter.table import Dialect, Group
+from aircut.kernels import scan
 from aircut.language.text import COMMENT
 from aircut.machine import Machine
 from aircut.source import Source
 
 NO_MODE = "g-0.1"  # the motion mode after a spline of points: it reads as -1
 AUXILIARY = "uvw"
+STRETCH = 4  # lines without others among them that the fast lane is worth while for
 FULL = CHUNK * ROW.size
 FATAL = (F.BLOCK_BUDGET, F.ABORTED)
 LITERAL = re.compile(r"(?<=[abcdefhijklpqrstuvwxyz=\[+\-*/,])(\d+\.?\d*|\.\d+)(?![\d.])")
@@ -56,6 +59,8 @@ class Text:
     def __init__(self, source: Source) -> None:
         self.source = source
         self.lines: dict[int, Line] = {}
+        self.slow = bytearray(len(source))  # lines at which the fast lane has got nowhere
+        self.ran = bytearray(len(source))  # lines that the fast lane ran
 
     def line(self, at: int) -> Line:
         """A clean line. Raises Refusal."""
@@ -91,6 +96,7 @@ class Interpreter(Run):
         self.found: dict[str, Text | None] = {}
         self.repeated = 0
         self.modal = dialect.codes["g80"]
+        self.lane = Lane(self.state, min(len(source), self.settings.limits.moves or 0))
 
     # --- diagnostics
 
@@ -145,7 +151,8 @@ class Interpreter(Run):
             self.next_line = self.line + 1
             m.line = out.line = self.line + 1
             try:
-                self.step()
+                if self.unit.slow[self.line] or not self.glide():
+                    self.step()
             except Refusal as refusal:
                 self.tell_refusal(refusal)
                 self.go_on(refusal)
@@ -154,7 +161,7 @@ class Interpreter(Run):
                 self.go_on(None)
             if m.finished:
                 self.finish()
-            if len(out.rows) >= FULL:
+            if len(out.rows) >= FULL or out.used > out.stowed:
                 limit = self.settings.limits.moves
                 if limit is not None and out.moves > limit:
                     self.warn(F.OUTPUT_LIMIT, limit=limit)
@@ -169,6 +176,29 @@ class Interpreter(Run):
             self.broken = not self.flow.stack
             raise Stopped from None
         self.state.transfer = None
+
+    def glide(self) -> bool:
+        """Run a stretch of plain motion in the fast lane; False where there is none."""
+        text, line = self.unit, self.line
+        if self.flow.search is not None:
+            return False
+        if text.source.classes.find(scan.OTHER, line, line + STRETCH) >= 0:
+            text.slow[line] = 1
+            return False
+        m = self.state
+        m.motion = self.modal
+        if not self.lane.open(m):
+            return False
+        after = self.lane.run(m, text.source, line, len(text.source))
+        if after == line:
+            text.slow[line] = 1
+            return False
+        text.ran[line:after] = b"\x01" * (after - line)
+        self.modal = self.lane.motions[self.lane.motion]
+        m.motion_name = self.modal.name.lower()
+        self.line = after - 1
+        self.next_line = after
+        return True
 
     def step(self) -> None:
         """Run a line. Raises Refusal."""
@@ -197,7 +227,8 @@ class Interpreter(Run):
         if m.stale:
             m.stale = False
             m.position = m.told[:]
-        m.numbered[5600] = m.numbered[5601] = 0.0
+        for number in FAULTS:
+            m.numbered[number] = 0.0
         block = line.block
         if block is None:
             block = self.compile(line)

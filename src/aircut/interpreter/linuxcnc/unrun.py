@@ -59,6 +59,8 @@ def lines_of(text: Text, last: int) -> Iterator[tuple[int, bool]]:
     ended = last < 0
     inside = False
     for at in range(len(text.source)):
+        if text.ran[at]:
+            continue
         raw = text.source.raw(at)
         if not raw.strip() or (raw.strip() == b"%" and not at):
             continue
