@@ -81,6 +81,7 @@ def all_cases() -> list[Path]:
 
 def machine(case: Case, folder: Path) -> Machine:
     for name, text in case.files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text, "utf-8")
     if "machine.toml" in case.files:
         made = load(folder)

@@ -20,7 +20,8 @@ from aircut.interpreter.linuxcnc.saving import restore_call
 from aircut.interpreter.linuxcnc.state import LOCALS
 
 if TYPE_CHECKING:
-    from aircut.interpreter.linuxcnc.interpreter import Interpreter, Text
+    from aircut.interpreter.linuxcnc.files import Text
+    from aircut.interpreter.linuxcnc.interpreter import Interpreter
 
 DEEPEST = 9  # calls in calls
 LOOPS = ("while", "do")
@@ -61,6 +62,7 @@ class Search:
     call: bool = False  # it is a subroutine that was called
     fanuc: bool = False
     where: tuple[Text, int] | None = None  # of the call
+    file: str = ""  # name of the file that it may be in
     kinds: tuple[str, ...] = field(default=())
 
 
@@ -289,8 +291,12 @@ class Flow:
         self.enter(name, self.values(line, 0, LOCALS), 1)
 
     def enter(self, name: str, values: tuple[float, ...] | None, count: int) -> None:
-        """Call a subroutine. values: of its locals; None by M98, where they are shared. Raises Refusal."""
+        """Call a subroutine. values: of its locals; None by M98, where they are shared. Raises Refusal.
+
+        A name with a path is that of the file; the subroutine in it has the last part of it.
+        """
         run, m = self.run, self.run.state
+        file, name = name, name.rsplit("/", 1)[-1]
         if len(self.stack) >= DEEPEST:
             raise Refusal(F.TOO_DEEP, limit=DEEPEST, what="calls")
         fanuc = values is None
@@ -300,9 +306,7 @@ class Flow:
             m.numbered[1 : LOCALS + 1] = [*values, *[0.0] * (LOCALS - len(values))]
         self.stack.append(Level(run.unit, run.next_line, self.sub, kept, m.scope, name, fanuc, m.saved, count))
         m.calls = len(self.stack)
-        if not fanuc:
-            m.scope = {}
-        m.saved = None
+        m.scope, m.saved = {}, None
         self.sub = name
         known = self.marks.get(name)
         if known is not None:
@@ -310,8 +314,8 @@ class Flow:
                 raise refuse(f"{name} is not for this kind of call", KINDS)
             run.jump(known.text, known.line + 1)
             return
-        self.search = Search(name, True, fanuc, (run.unit, run.line))
-        found = run.find_file(name)
+        self.search = Search(name, True, fanuc, (run.unit, run.line), file)
+        found = run.find_file(file)
         if found is not None:
             run.jump(found, 0)
 
@@ -334,8 +338,7 @@ class Flow:
         restore_call(run)
         if level.locals is not None:
             m.numbered[1 : LOCALS + 1] = level.locals
-            m.scope = level.scope
-        m.saved = level.saved
+        m.scope, m.saved = level.scope, level.saved
         m.calls = len(self.stack)
         self.sub = level.sub
         run.jump(level.text, level.line)
@@ -351,20 +354,21 @@ class Flow:
         if count > 0:
             self.enter(name, None, count)
 
-    def m99(self) -> bool:
-        """M99: back to M98, or run again; False in the main program. Raises Refusal."""
-        if not self.stack:
-            return False
+    def m99(self, rest: tuple[int, int]) -> None:
+        """M99 in a subroutine: back to M98, or run again. rest: what follows it in the line. Raises Refusal."""
+        if rest[0] < rest[1]:
+            raise Refusal(F.MISPLACED_WORDS, where=rest, what="M99")
         level = self.stack[-1]
         if not level.fanuc:
             raise refuse("a subroutine of CALL ends with ENDSUB")
         if level.passes > 1:
+            restore_call(self.run)
             self.stack[-1] = level._replace(passes=level.passes - 1)
+            self.run.state.scope, self.run.state.saved = {}, None
             mark = self.marks[level.label]
             self.run.jump(mark.text, mark.line + 1)
         else:
             self.leave()
-        return True
 
     def unknown(self, line: OLine, name: str, sought: bool = False) -> None:
         where = (line.end, len(line.code))

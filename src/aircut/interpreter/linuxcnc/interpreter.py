@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Generator
-from pathlib import Path
 from typing import Any
 
 from aircut.canon import CHUNK, ROW, Chunk
@@ -15,14 +14,15 @@ from aircut.diagnostics import Frame, Refusal, Severity, Span
 from aircut.diagnostics import faults as F
 from aircut.interpreter import path
 from aircut.interpreter.compiling import FAILURES
-from aircut.interpreter.linuxcnc import places, starting, unrun
-from aircut.interpreter.linuxcnc.arranging import Steps, arrange, check_values, gather
-from aircut.interpreter.linuxcnc.blocks import Block, OLine, check_number, parse, parse_o, read
+from aircut.interpreter.linuxcnc import files, places, starting, unrun
+from aircut.interpreter.linuxcnc.arranging import Steps, arrange, check_values, gather, whole
+from aircut.interpreter.linuxcnc.blocks import Block, OLine, parse, read
 from aircut.interpreter.linuxcnc.comments import say
-from aircut.interpreter.linuxcnc.flow import Flow
+from aircut.interpreter.linuxcnc.files import Line, Text
+from aircut.interpreter.linuxcnc.flow import Flow, Search
 from aircut.interpreter.linuxcnc.lane import Lane
 from aircut.interpreter.linuxcnc.state import FAULTS, State
-from aircut.interpreter.linuxcnc.text import check, clean
+from aircut.interpreter.linuxcnc.text import check
 from aircut.interpreter.requests import Request
 from aircut.interpreter.running import Run, Settings, Stopped
 from aircut.interpreter.table import Dialect, Group
@@ -37,41 +37,6 @@ STRETCH = 4  # lines without others among them that the fast lane is worth while
 FULL = CHUNK * ROW.size
 FATAL = (F.BLOCK_BUDGET, F.ABORTED)
 LITERAL = re.compile(r"(?<=[abcdefhijklpqrstuvwxyz=\[+\-*/,])(\d+\.?\d*|\.\d+)(?![\d.])")
-
-
-class Line:
-    """A line, read as far as needed. code: clean; comment: its last one."""
-
-    __slots__ = ("block", "checked", "code", "comment", "literals", "oline")
-
-    def __init__(self, code: str, comment: str | None) -> None:
-        self.code = code
-        self.comment = comment
-        self.oline: OLine | None = None
-        self.block: Block | None = None
-        self.literals: tuple[float, ...] = ()
-        self.checked = False
-
-
-class Text:
-    """A file being run: its source, and its lines as they are first met."""
-
-    def __init__(self, source: Source) -> None:
-        self.source = source
-        self.lines: dict[int, Line] = {}
-        self.slow = bytearray(len(source))  # lines at which the fast lane has got nowhere
-        self.ran = bytearray(len(source))  # lines that the fast lane ran
-
-    def line(self, at: int) -> Line:
-        """A clean line. Raises Refusal."""
-        known = self.lines.get(at)
-        if known is None:
-            text = clean(self.source.text(at), len(self.source.raw(at)))
-            known = Line(text.code, text.comment)
-            check_number(text.code)
-            known.oline = parse_o(text.code)
-            self.lines[at] = known
-        return known
 
 
 class Interpreter(Run):
@@ -94,6 +59,7 @@ class Interpreter(Run):
         self.percent = False
         self.broken = False  # the run ended before its end, in the main program
         self.found: dict[str, Text | None] = {}
+        self.folders = files.folders(source.name, machine.macros)
         self.repeated = 0
         self.modal = dialect.codes["g80"]
         self.lane = Lane(self.state, min(len(source), self.settings.limits.moves or 0))
@@ -215,11 +181,39 @@ class Interpreter(Run):
         percent = line.code == "%" and source.raw(self.line).strip() == b"%"
         if percent and self.percent and not (self.flow.stack and self.flow.search is None):
             self.close()
+        if line.fanuc is not None and (line.fanuc[1] == "98" or self.flow.stack):
+            self.fanuc(line, line.fanuc)
+            return
         if self.flow.search is not None:
             return
         if line.code == "%":
             raise Refusal(F.MISPLACED_PERCENT, where=(0, 1))
         self.block(line)
+
+    def fanuc(self, line: Line, start: re.Match[str]) -> None:
+        """M98, and M99 in a subroutine. M98 is read even where lines are passed over. Raises Refusal."""
+        passed = self.flow.search is not None
+        if start[1] == "99":
+            if not passed:
+                self.flow.m99((start.end(), len(line.code.rstrip(COMMENT))))
+            return
+        if line.code.startswith(".", start.end()):
+            raise Refusal(F.UNKNOWN_CODE, where=(start.start(1) - 1, start.end() + 1), code="M98.")
+        block = line.block or self.compile(line)
+        values = self.values(block, line)
+        names, words = gather(block.letters, values, self.dialect)
+        if "p" not in words:
+            raise Refusal(F.MISSING_WORD, code="M98", word="P", meaning="the number of the subroutine")
+        if not passed:
+            arrange(names, words, self.modal, self.dialect)
+            self.flow.m98(str(whole("p", words["p"])), int(words.get("l", 1.0)))
+
+    def values(self, block: Block, line: Line) -> tuple[float, ...]:
+        """The values of a block. Raises Refusal."""
+        try:
+            return block.values(self.state, line.literals)
+        except places.EVALUATION as failure:
+            raise places.explained(places.values_of(read(line.code)), self.state, failure) from None
 
     def block(self, line: Line) -> None:
         """Run a block of words. Raises Refusal."""
@@ -233,10 +227,7 @@ class Interpreter(Run):
         if block is None:
             block = self.compile(line)
             self.check_axes(block)
-        try:
-            values = block.values(m, line.literals)
-        except places.EVALUATION as failure:
-            raise places.explained(places.values_of(read(line.code)), m, failure) from None
+        values = self.values(block, line)
         if block.letters:
             names, words = gather(block.letters, values, self.dialect)
             key = (tuple(names), tuple(words), self.modal.name)
@@ -261,7 +252,9 @@ class Interpreter(Run):
         """Raises Refusal where a word names U, V or W, and the machine has no such axis: then it is no letter at all."""
         for letter in block.letters:
             if letter in AUXILIARY and letter not in self.machine.auxiliary:
-                raise Refusal(F.ILLEGAL_CHARACTER, letter, character=letter.upper(), hint="the machine has no such axis")
+                raise Refusal(
+                    F.ILLEGAL_CHARACTER, letter, character=letter.upper(), hint="the machine has no such axis"
+                )
 
     def compile(self, line: Line) -> Block:
         """The compiled block of a line; lines that differ in literal numbers alone share it. Raises Refusal."""
@@ -350,7 +343,7 @@ class Interpreter(Run):
         flow = self.flow
         if flow.search is not None and flow.search.call and flow.search.where:
             self.unit, self.line = flow.search.where
-            refusal = Refusal(F.NO_SUBROUTINE, name=flow.search.label, hint="")
+            refusal = self.not_found(flow.search)
             flow.give_up()
         else:
             self.line = max(len(self.unit.source) - 1, 0)
@@ -359,11 +352,19 @@ class Interpreter(Run):
         if refusal.fault is F.END_MISSING or not self.settings.keep_going:
             raise Stopped
 
+    def not_found(self, search: Search) -> Refusal:
+        """That nothing has been found of what was sought: a call's subroutine, or the end of what is passed over."""
+        if not search.call:
+            return Refusal(F.O_WORD, what=f"{' or '.join(search.kinds).upper()} is missing", hint="")
+        file = self.found.get(search.file)
+        hint = files.missing(search.label, search.file, file.source.name if file else None, self.folders)
+        return Refusal(F.NO_SUBROUTINE, name=search.label, hint=hint)
+
     def close(self) -> None:
         """A second percent sign. Raises Stopped."""
         self.state.out.event("FINISH")
         if self.flow.search is not None:
-            self.tell_refusal(Refusal(F.NO_SUBROUTINE, name=self.flow.search.label, hint=""))
+            self.tell_refusal(self.not_found(self.flow.search))
         raise Stopped
 
     def finish(self) -> None:
@@ -384,16 +385,12 @@ class Interpreter(Run):
     # --- files
 
     def find_file(self, name: str) -> Text | None:
-        """The file of a subroutine: in the working directory, then in the machine's folders."""
+        """The file of a subroutine. Raises Refusal where it cannot be read."""
         if name not in self.found:
-            self.found[name] = None
-            for folder in (Path(), *self.machine.macros):
-                file = folder / f"{name}.ngc"
-                if file.is_file():
-                    text = self.units.get(str(file)) or Text(Source.load(file))
-                    if str(file) not in self.units:
-                        self.units[str(file)] = text
-                        self.files.append(str(file))
-                    self.found[name] = text
-                    break
+            path = files.find(name, self.folders)
+            text = None
+            if path is not None and (text := self.units.get(str(path))) is None:
+                text = self.units[str(path)] = files.load(path)
+                self.files.append(str(path))
+            self.found[name] = text
         return self.found[name]

@@ -21,7 +21,8 @@ from aircut.interpreter.linuxcnc.text import check as check_text
 from aircut.language.expressions import Number
 
 if TYPE_CHECKING:
-    from aircut.interpreter.linuxcnc.interpreter import Interpreter, Line, Text
+    from aircut.interpreter.linuxcnc.files import Line, Text
+    from aircut.interpreter.linuxcnc.interpreter import Interpreter
 
 #: Values in brackets that may follow an O-word: the least and the most.
 VALUES = {"if": (1, 1), "elseif": (1, 1), "while": (1, 1), "repeat": (1, 1), "call": (0, LOCALS),
