@@ -53,7 +53,7 @@ def test_every_part_of_the_time_is_told_apart(folder):
     # 100 mm at 100 mm/s; twice 50 mm at 50 mm/s; acceleration 500 mm/s².
     rapid, feed = 1.0 + 0.2, 2 * (1.0 + 0.1)
     seconds = {"rapid": rapid, "feed": feed, "probing": 0, "dwell": 2, "spindle": 4, "tool_change": 8,
-               "pallet": 0, "operator": 0, "input": 0}  # fmt: skip
+               "pallet": 0, "operator": 0, "input": 0, "index": 0, "orient": 0}  # fmt: skip
     assert report["seconds"] == pytest.approx(seconds)
     assert report["total"] == pytest.approx(sum(seconds.values()))
     assert report["counts"]["tool_change"] == 2 and report["counts"]["dwell"] == 1

@@ -125,6 +125,7 @@ class Durations(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     pallet: NotNegative = 0.0
     operator: NotNegative = 0.0  # M0, M1 where it stops, M60, messages with buttons
     input: NotNegative = 0.0  # M66, M67
+    orient: NotNegative = 1.0  # M19, the spindle at rest
 
 
 class RotaryTable(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

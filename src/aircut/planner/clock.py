@@ -33,6 +33,8 @@ class Pause(NamedTuple):
 KINDS = {
     "dwell": "dwell",
     "spindle": "spindle up and down",
+    "index": "waiting for the spindle's index",
+    "orient": "spindle orientation",
     "tool_change": "tool change",
     "pallet": "pallet",
     "operator": "operator",
@@ -81,7 +83,14 @@ class Clock:
         self.regimes = [Regime(0, feed_factor=overrides.feed, rapid_factor=overrides.rapid)]
         self.spinning = 0.0  # revolutions a minute, negative counterclockwise
         self.direction = 0
-        self.speed = 0.0
+        self.speed = 0.0  # as programmed
+        self.surface = False  # that is one of the tool over the part, G96
+        self.spindle_factor = overrides.spindle  # as the program allows
+        self.feed_factor = overrides.feed
+        self.per_revolution = False  # G95
+        self.synchronized = False  # the axes follow the spindle
+        self.let_go = -1  # before which move they last ceased to
+        self.orienting = 0.0  # seconds that it takes the spindle to orient
         self.tool: int | None = None
         self.by_macro = False
 
@@ -111,22 +120,85 @@ class Clock:
 
     def spin(self, event: Event, direction: int) -> None:
         self.direction = direction
+        self.orienting = 0.0
         self.turn(event)
 
     def set_speed(self, event: Event) -> None:
         self.speed = event.values[1]
         if self.direction:
             self.turn(event)
+        else:
+            self.set_feed(event)
+
+    def turning(self) -> float:
+        """Revolutions a minute that the spindle can give of what is programmed."""
+        return min(self.speed * self.spindle_factor, self.machine.spindle.max_speed)
 
     def turn(self, event: Event) -> None:
-        """Bring the spindle to its speed."""
-        most = self.machine.spindle.max_speed
-        wanted = self.direction * min(self.speed * self.overrides.spindle, most)
-        change = abs(wanted - self.spinning)
-        self.spinning = wanted
-        if change:
-            rate = self.machine.spindle.acceleration
-            self.pause(event, "spindle", change / rate if rate else 0.0)
+        """Bring the spindle to its speed. Under G96 it follows the tool, which takes no time of its own."""
+        self.set_feed(event)
+        wanted = self.direction * self.turning()
+        if self.surface and self.direction:
+            return
+        seconds = self.ramp(abs(wanted - self.spinning))
+        if wanted != self.spinning:
+            self.spinning = wanted
+            self.pause(event, "spindle", seconds)
+
+    def ramp(self, change: float) -> float:
+        """Seconds of a change of the spindle's speed, revolutions a minute."""
+        rate = self.machine.spindle.acceleration
+        return change / rate if rate else 0.0
+
+    def spindle_mode(self, event: Event) -> None:
+        self.surface = event.values[1] > 0.0
+
+    def spindle_override(self, event: Event, on: bool) -> None:
+        self.spindle_factor = self.overrides.spindle if on else 1.0
+        if self.direction:
+            self.turn(event)
+
+    # --- moves that follow the spindle
+
+    def set_feed(self, event: Event) -> None:
+        """What becomes of feeds: those for each revolution are as much faster as the spindle is."""
+        factor = 1.0 if self.synchronized else self.feed_factor
+        if (self.synchronized or self.per_revolution) and self.speed > 0.0:
+            factor *= self.spindle_factor if self.surface else self.turning() / self.speed
+        if factor != self.regimes[-1].feed_factor:
+            self.change(event, feed_factor=factor)
+
+    def feed_mode(self, event: Event) -> None:
+        self.per_revolution = event.values[1] == 1
+        self.set_feed(event)
+
+    def synchronize(self, event: Event) -> None:
+        """The axes wait for the spindle's index: half a revolution on the average. Moves in a row wait once."""
+        waits = not self.synchronized and self.let_go != event.at
+        self.synchronized = True
+        self.set_feed(event)
+        if waits and self.spinning:
+            self.pause(event, "index", 30.0 / abs(self.spinning))
+
+    def let_loose(self, event: Event) -> None:
+        self.synchronized, self.let_go = False, event.at
+        self.set_feed(event)
+
+    def rigid_tap(self, event: Event) -> None:
+        """At the bottom and again back at the top the spindle turns round, and the axis with it."""
+        for move in (1, 2):
+            self.pause(event._replace(at=event.at + move), "spindle", self.ramp(2.0 * abs(self.spinning)))
+
+    def orient(self, event: Event) -> None:
+        """The spindle stops, and turns to an angle; it does so by itself."""
+        self.orienting = self.ramp(abs(self.spinning)) + self.durations.orient
+        self.spinning = 0.0
+
+    def wait_orient(self, event: Event) -> None:
+        self.pause(event, "orient", min(self.orienting, event.values[1]))
+        self.orienting = 0.0
+
+    # --- pauses
 
     def change_tool(self, event: Event) -> None:
         tool = event.values[0]
@@ -176,7 +248,8 @@ class Clock:
         self.change(event, acceleration=acceleration, deceleration=deceleration, jerk=max(jerk / 100.0, SLOWEST))
 
     def feed_override(self, event: Event, on: bool) -> None:
-        self.change(event, feed_factor=self.overrides.feed if on else 1.0)
+        self.feed_factor = self.overrides.feed if on else 1.0
+        self.set_feed(event)
 
 
 SLOWEST = 0.05  # share of the jerk that is left at G104 J0
@@ -187,6 +260,15 @@ ACTIONS: dict[str, Callable[[Clock, Event], None]] = {
     "START_SPINDLE_COUNTERCLOCKWISE": lambda clock, event: clock.spin(event, -1),
     "STOP_SPINDLE_TURNING": lambda clock, event: clock.spin(event, 0),
     "SET_SPINDLE_SPEED": Clock.set_speed,
+    "SET_SPINDLE_MODE": Clock.spindle_mode,
+    "ENABLE_SPEED_OVERRIDE": lambda clock, event: clock.spindle_override(event, True),
+    "DISABLE_SPEED_OVERRIDE": lambda clock, event: clock.spindle_override(event, False),
+    "SET_FEED_MODE": Clock.feed_mode,
+    "START_SPEED_FEED_SYNC": Clock.synchronize,
+    "STOP_SPEED_FEED_SYNCH": Clock.let_loose,
+    "RIGID_TAP": Clock.rigid_tap,
+    "ORIENT_SPINDLE": Clock.orient,
+    "WAIT_ORIENT_COMPLETE": Clock.wait_orient,
     "CHANGE_TOOL": Clock.change_tool,
     "TOOL_CHANGE_MACRO": Clock.tool_macro,
     "PALLET_SHUTTLE": Clock.pallet,

@@ -83,7 +83,8 @@ def turn_spindle(direction: int, m: State, w: Words) -> None:
 def constant_surface(m: State, w: Words) -> None:
     """G96: the S word is a surface speed, D the highest number of revolutions."""
     m.css = True
-    m.out.event("SET_SPINDLE_MODE", spindle_of(m, w), abs(w["d"]) if "d" in w else UNLIMITED)
+    m.most_revolutions = abs(w["d"]) if "d" in w else UNLIMITED
+    m.out.event("SET_SPINDLE_MODE", spindle_of(m, w), m.most_revolutions)
 
 
 def constant_revolutions(m: State, w: Words) -> None:

@@ -6,7 +6,7 @@ Sources: 001; the canonical listing, sections 7, 10, 11 and 14.
 from __future__ import annotations
 
 from functools import partial
-from math import atan2, cos, hypot, radians, sin, sqrt
+from math import atan2, cos, hypot, radians, sin, sqrt, tau
 
 from aircut.canon import EXACT_STOP, INVERSE_TIME, Kind
 from aircut.diagnostics import Refusal
@@ -24,6 +24,7 @@ SPREAD_SHARE = 0.001  # or this part of the larger
 SPREAD_MOST = 100  # but never this many times
 SLOWEST = 0.1  # program units a minute
 TINY = 1e-7
+METER, FOOT = 1000.0, 304.8  # mm
 BACK_OFF = 0.254  # mm from the probed point, back towards the start
 
 
@@ -105,8 +106,19 @@ def speed_of(m: State, w: Words, what: str, length: float) -> float:
     if m.feed_mode == 95:
         if m.speed <= 0.0:
             raise wrong("G95 needs a spindle speed", "program S")
-        return m.gave_feed * m.unit * m.speed
+        return m.gave_feed * m.unit * revolutions(m, w)
     return m.gave_feed * m.unit
+
+
+def revolutions(m: State, w: Words) -> float:
+    """Revolutions a minute in a move; under G96 those at its middle, where S is meters (G20: feet) a minute."""
+    if not m.css:
+        return m.speed
+    most = min(m.most_revolutions, m.machine.spindle.max_speed)
+    here = m.position[0]
+    end = m.axis(w, 0) + (0.0 if m.absolute else here) if "x" in w else here
+    around = tau * abs(here + end) / 2.0
+    return min(most, m.speed * (FOOT if m.unit == INCH else METER) / around) if around else most
 
 
 def check_feed(m: State, w: Words) -> None:

@@ -69,6 +69,7 @@ class State(house.State):
         self.plane_code = 170
         self.path_mode = 64
         self.css = False
+        self.most_revolutions = 0.0  # a minute, G96 D
         self.cutter = 0  # 0, 41, 42
         self.arc_refused = False  # right after G40
         self.length_on = False
