@@ -9,6 +9,14 @@ from pathlib import Path
 from typing import IO, Any
 
 
+def below(folder: Path, name: str) -> Path:
+    """The path of a file in a folder or below it. Raises ValueError for a name that is none or leads out."""
+    path = folder / name
+    if not name or "\0" in name or path.is_dir() or not path.resolve().is_relative_to(folder.resolve()):
+        raise ValueError(f"“{name}” is no file below {folder}")
+    return path
+
+
 @contextmanager
 def replacing(path: Path, binary: bool = False) -> Iterator[IO[Any]]:
     """Open a temporary file beside `path`; it takes its place when all went well, else it is removed.

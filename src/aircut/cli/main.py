@@ -86,13 +86,16 @@ def cli() -> None:
 @click.option("--resume", is_flag=True, help="Go on where the last run on the machine was stopped.")
 @click.option("--stop-line", type=click.IntRange(1), metavar="N", help="Stop before line N, to be resumed.")
 @click.option("--format", "style", type=click.Choice(FORMATS), default="summary", show_default=True)
+@click.option(
+    "--logs", type=FOLDER, metavar="DIR", help="Write the files of LOGOPEN and PROBEOPEN below this folder (linuxcnc)."
+)
 @click.option("-o", "--output", type=FILE, help="Write here instead of to the terminal.")
 def run(file: Path | None, style: str, output: Path | None, typed: tuple[str, ...], **options: Any) -> None:
     """Run a program on the virtual machine and tell what it does."""
     if (file is None) == (not typed):
         raise click.UsageError("give either a FILE or --mdi COMMAND")
     beside = [name for name in ("from_line", "stop_line", "resume", "as_macro") if options[name]]
-    if typed and (beside or output is not None or style != "summary"):
+    if typed and (beside or output is not None or options["logs"] or style != "summary"):
         raise click.UsageError("--mdi writes canonical commands to the terminal, and starts and stops nowhere else")
     if options["as_macro"] and len(beside) > 1:
         raise click.UsageError("--as-macro runs the whole file")

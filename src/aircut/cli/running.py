@@ -34,9 +34,29 @@ def run(file: Path, style: str, output: Path | None, options: dict[str, Any]) ->
         told(made, simulation, style, output, options, policy)
     finally:  # whatever ends the run, the machine remembers
         common.remember(options, machine, made)
+        if options["logs"] is not None:
+            write_logs(made, options["logs"])
     if style != "json" or output is not None:
         common.show(made.diagnostics, common.lines_of(made), sys.stderr)
     return int(made.failed)
+
+
+def write_logs(made: Run, folder: Path) -> None:
+    """Write the files of the program's own, below a folder and nowhere else. Raises click.ClickException."""
+    from aircut.files import below, replacing
+
+    for name, log in made.logs().items():
+        try:
+            path = below(folder, name)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            before = path.read_text("utf-8") if log.append and path.exists() else ""
+            with replacing(path) as file:
+                file.write(before)
+                file.writelines(f"{line}\n" for line in log.lines)
+        except ValueError as error:
+            raise click.ClickException(f"cannot write a log: {error}") from None
+        except OSError as error:
+            raise click.ClickException(f"cannot write {name}: {error.strerror}") from None
 
 
 def beginning(options: dict[str, Any], machine: Machine, file: Path) -> tuple[Mode, Start | None]:

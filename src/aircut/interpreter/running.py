@@ -46,6 +46,13 @@ class Mode(IntEnum):
 WHOLE = (Mode.PROGRAM, Mode.ANALYSIS)  # what should end as a program does
 
 
+class Log(NamedTuple):
+    """A text file that a program writes."""
+
+    append: bool  # to one that is there already
+    lines: list[str]
+
+
 class Start(NamedTuple):
     """Where motion starts, in place of the first line."""
 
@@ -117,6 +124,10 @@ class Run:
     def failed(self) -> bool:
         """Whether there was an error."""
         return any(d.severity is Severity.ERROR for d in self.diagnostics)
+
+    def logs(self) -> dict[str, Log]:
+        """Text files that the program has written, by the names that it gives them."""
+        return {}
 
     def remembered(self) -> dict[int, float]:
         """The numbered variables that outlive the run, as the machine stores them."""

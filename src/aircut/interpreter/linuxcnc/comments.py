@@ -26,6 +26,7 @@ def say(m: State, comment: str) -> None:
         text = comment.lstrip(" \t")
         if comment:
             m.out.event("COMMENT", text)
+            m.logs.comment(comment)
         return
     text = comment[active.end() :]
     if kind == "msg":
@@ -36,11 +37,18 @@ def say(m: State, comment: str) -> None:
     elif kind == "print":
         m.out.event("PRINT", expanded(m, text))
     elif kind == "log":
-        m.out.event("LOG", expanded(m, text))
+        text = expanded(m, text)
+        m.out.event("LOG", text)
+        if m.logs.log is not None:
+            m.logs.log.lines.append(text)
     elif kind == "abort":
         raise Refusal(F.ABORTED, text=expanded(m, text))
+    elif kind == "logclose":
+        m.out.event("LOGCLOSE")
+        m.logs.log = None
     else:
-        m.out.event(kind.upper(), *([text] if active[2] else []))
+        m.out.event(kind.upper(), text)
+        m.logs.log = m.logs.start(text, kind == "logappend")
 
 
 def expanded(m: State, text: str) -> str:

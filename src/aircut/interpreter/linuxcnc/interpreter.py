@@ -24,7 +24,7 @@ from aircut.interpreter.linuxcnc.lane import Lane
 from aircut.interpreter.linuxcnc.state import FAULTS, State
 from aircut.interpreter.linuxcnc.text import check
 from aircut.interpreter.requests import Request
-from aircut.interpreter.running import Run, Settings, Stopped
+from aircut.interpreter.running import Log, Run, Settings, Stopped
 from aircut.interpreter.table import Dialect, Group
 from aircut.kernels import scan
 from aircut.language.text import COMMENT
@@ -57,6 +57,8 @@ class Interpreter(Run):
         self.steps: dict[Any, Steps] = {}
         self.argument_cache: dict[OLine, Any] = {}
         self.percent = False
+        #: A code that asks the world: its conversation, the codes still to run, and the block's words.
+        self.talk: tuple[Generator[Request, Any, None], Steps, dict[str, float]] | None = None
         self.broken = False  # the run ended before its end, in the main program
         self.found: dict[str, Text | None] = {}
         self.folders = files.folders(source.name, machine.macros)
@@ -119,6 +121,8 @@ class Interpreter(Run):
             try:
                 if self.unit.slow[self.line] or not self.glide():
                     self.step()
+                if self.talk is not None:
+                    yield from self.converse(*self.talk)
             except Refusal as refusal:
                 self.tell_refusal(refusal)
                 self.go_on(refusal)
@@ -141,7 +145,7 @@ class Interpreter(Run):
         if unrun.O_WORD.match(self.unit.source.raw(self.line)):  # nobody knows what would follow
             self.broken = not self.flow.stack
             raise Stopped from None
-        self.state.transfer = None
+        self.state.transfer = self.talk = None
 
     def glide(self) -> bool:
         """Run a stretch of plain motion in the fast lane; False where there is none."""
@@ -300,7 +304,7 @@ class Interpreter(Run):
         m.words = words
         m.machine_frame = False
         m.changed = None
-        for row in steps.codes:
+        for nth, row in enumerate(steps.codes):
             if row.nameless:
                 self.modal = self.dialect.codes["g80"]
                 m.motion_name = NO_MODE
@@ -312,14 +316,29 @@ class Interpreter(Run):
             if row.group is Group.STOP:
                 path.flush(m)
             try:
-                row.run(m, words)
+                talk = row.run(m, words)
             except Refusal as refusal:
                 refusal.values.setdefault("code", row.name)  # the word to show
                 raise
+            if talk is not None:
+                self.talk = (talk, steps._replace(codes=steps.codes[nth + 1 :]), words)
+                return
             if m.transfer is not None:
                 transfer, m.transfer = m.transfer, None
                 if transfer(self):
                     return
+
+    def converse(
+        self, talk: Generator[Request, Any, None], rest: Steps, words: dict[str, float]
+    ) -> Generator[Request, Any, None]:
+        """Carry on a block whose code has something to ask, and the codes after it. Raises Refusal."""
+        self.talk = None
+        try:
+            yield from talk
+        except Refusal as refusal:
+            refusal.values.setdefault("code", self.modal.name)
+            raise
+        self.perform(rest, words)
 
     def carry_out(self, names: list[str], words: dict[str, float]) -> None:
         """Run codes that no line has written. Raises Refusal."""
@@ -376,6 +395,9 @@ class Interpreter(Run):
             if not any(source.raw(at).strip() == b"%" for at in range(last, len(source))):
                 self.state.out.event("COMMENT", "interpreter: percent sign missing from end of file")
         raise Stopped
+
+    def logs(self) -> dict[str, Log]:
+        return self.state.logs.files
 
     def remembered(self) -> dict[int, float]:
         """The parameters that were given, and those that outlive every run (inches, degrees)."""

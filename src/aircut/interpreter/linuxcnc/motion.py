@@ -5,14 +5,19 @@ Sources: 001; the canonical listing, sections 7, 10, 11 and 14.
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from functools import partial
 from math import atan2, cos, hypot, radians, sin, sqrt, tau
+from typing import Any
 
 from aircut.canon import EXACT_STOP, INVERSE_TIME, Kind
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.geometry import arcs
 from aircut.interpreter.linuxcnc.state import G28, G30, NUMBERED_NINE, PROBED, TRIPPED, State
+from aircut.interpreter.probing import FAILURES, SUCCESS
+from aircut.interpreter.requests import Probe as ProbeRequest
+from aircut.interpreter.requests import Probed, Request
 from aircut.interpreter.state import INCH, PLANES
 from aircut.interpreter.table import Code, Group, Order, Words
 
@@ -246,8 +251,8 @@ def machine_frame(m: State, w: Words) -> None:
     m.machine_frame = True
 
 
-def probe(m: State, w: Words) -> None:
-    """G38.2 to G38.5: with nothing there, the probe trips at the target. Raises Refusal."""
+def probe(toward: bool, alarm: bool, m: State, w: Words) -> Generator[Request, Any, None]:
+    """G38.2 to G38.5: where nobody answers, the probe trips at the target. Raises Refusal."""
     if m.cutter:
         raise Refusal(F.PROBE_COMPENSATION)
     if m.feed_mode == 95:
@@ -260,16 +265,26 @@ def probe(m: State, w: Words) -> None:
         raise Refusal(F.PROBE_TOO_CLOSE)
     start = m.told
     m.out.event("TURN_PROBE_ON")
+    aim = [s + o for s, o in zip(m.to_space(place), m.tool_offset, strict=True)]
+    reply: Probed | None = yield ProbeRequest(tuple(m.machine_position()), tuple(aim), toward, m.slots[0].id, speed)
+    if reply is not None:
+        place = m.to_program([p - o for p, o in zip(reply.position, m.tool_offset, strict=True)])
     go(m, PROBE, place, speed, m.flags | EXACT_STOP)
     m.out.event("TURN_PROBE_OFF")
     for i in range(9):
         m.numbered[PROBED + i] = m.shown(i)
-    m.numbered[TRIPPED] = 0.0
+    m.numbered[TRIPPED] = float(reply is not None and reply.state == SUCCESS)
+    m.stale = True
+    if reply is not None:
+        if reply.state == SUCCESS:
+            m.logs.probed([m.shown(i) for i in range(9)])
+        elif alarm:
+            raise Refusal(F.PROBE_FAILED, reason=FAILURES[reply.state])
+        return
     span = sqrt(sum((place[i] - start[i]) ** 2 for i in (0, 1, 2)))
     if span > 0.0:
         back = [place[i] + (start[i] - place[i]) * (BACK_OFF / span) if i < 3 else place[i] for i in range(9)]
         m.told = back
-    m.stale = True
 
 
 def go_home(stored: int, m: State, w: Words) -> None:
@@ -301,7 +316,7 @@ CODES = (
     move("G1", "Straight feed", partial(straight, FEED)),
     arc_move("G2", "Clockwise arc feed", partial(arc, -1)),
     arc_move("G3", "Counterclockwise arc feed", partial(arc, +1)),
-    *(move(f"G38.{n}", "Straight probe", probe, needs_axes=True) for n in (2, 3, 4, 5)),
+    *(move(f"G38.{n}", "Straight probe", partial(probe, n < 4, n % 2 == 0), needs_axes=True) for n in (2, 3, 4, 5)),
     Code(
         "G53", "Machine coordinates, for one block", machine_frame, Group.NON_MODAL, Order.NON_MODAL, fits=("G0", "G1")
     ),

@@ -14,6 +14,7 @@ from typing import Any
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter import state as house
+from aircut.interpreter.linuxcnc.logs import Logs
 from aircut.interpreter.state import INCH
 from aircut.interpreter.table import Code
 from aircut.machine.tools import EMPTY, Tool
@@ -85,6 +86,7 @@ class State(house.State):
         self.sticky: dict[str, float] = {}  # words that a cycle remembers
         self.cycle_height: float | None = None  # where the first cycle began
         self.finished = False
+        self.logs = Logs()
         self.saved: Any = None  # by M70 at this level of calls
 
     # --- position
