@@ -218,9 +218,11 @@ def test_tool_twice_the_first_counts(tmp_path: Path) -> None:
     )
 
 
-def test_offsets_without_a_place(tmp_path: Path) -> None:
-    path = put(tmp_path, "tool.tbl", "T1 P1 Z5 A90 B0 W-2\n")
-    assert read_library(path) == ({1: Tool(1, slot=1, z=5.0)}, (f"{path}:1: no place for A, W: dropped",))
+def test_offsets_of_nine_axes(tmp_path: Path) -> None:
+    """Angles have no unit of length: 25.4 mm an inch is for U, V and W."""
+    path = put(tmp_path, "tool.tbl", "T1 P1 Z5 A90 B0 C-1 U1 V.5 W-2\n")
+    tool = Tool(1, slot=1, z=127.0, a=90.0, c=-1.0, u=25.4, v=12.7, w=-50.8)
+    assert read_library(path, 25.4) == ({1: tool}, ())
 
 
 def test_name_that_is_not_utf8(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from aircut.diagnostics import Diagnostic, Severity, Span
 from aircut.diagnostics import faults as F
 from aircut.interpreter.running import Limits, Mode, Run, Settings, Start
 from aircut.interpreter.table import Dialect
-from aircut.machine import Machine, MachineError, load, memory, store
+from aircut.machine import Machine, MachineError, inifile, load, memory, store
 from aircut.rules.policy import Policy, RulesError
 from aircut.source import Source
 
@@ -36,27 +36,39 @@ def dialect(options: dict[str, Any]) -> Dialect:
 
 def machine(options: dict[str, Any]) -> Machine:
     """The machine that the options describe. Raises click.UsageError."""
+    language = dialect(options)
     try:
         if options["folder"]:
             if options["axes"]:
                 raise click.UsageError("--axes is for the built-in machine; a folder's machine.toml names its own")
             made = load(options["folder"])
         else:
-            made = dialects.machine(dialect(options), options["axes"] or "")
+            made = dialects.machine(language, options["axes"] or "")
         made.macros = (*options["macros"], *made.macros)
         made.key = options["key"]
         if options["entry"]:
             made.options = msgspec.structs.replace(made.options, entry=options["entry"])
         if options["tools"]:
-            from aircut.machine.imports import read_library
+            from aircut.machine.imports import read_library, read_slots
 
-            made.tools, warnings = read_library(options["tools"], UNITS[options["tool_unit"]])
+            unit = UNITS[options["tool_unit"]] if options["tool_unit"] else language.table_unit
+            made.tools, warnings = read_library(options["tools"], unit)
+            made.slots = read_slots(options["tools"], unit)
             for text in warnings:
                 click.echo(f"{text} (warning)", err=True)
             made.own_tools = True
         if options["parameters"]:
-            known = dialect(options).parameters or (*memory.PERSISTENT, *memory.GIVEN)
-            made.variables |= memory.read_parameters(options["parameters"], known)
+            known = language.parameters or (*memory.PERSISTENT, *memory.GIVEN)
+            given = memory.read_parameters(options["parameters"], known)
+            if language.parameters:
+                made.parameters = given
+            else:
+                made.variables |= given
+        if options["ini"]:
+            if not language.takes_ini:
+                raise click.UsageError("--ini is for programs of the linuxcnc dialect")
+            made.ini = inifile.load(options["ini"])
+            made.macros = (*made.ini.folders, *made.macros)
     except MachineError as error:
         raise click.UsageError(str(error)) from None
     return made

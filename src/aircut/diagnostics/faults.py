@@ -70,6 +70,7 @@ AXIS_DISABLED = Fault(
     "the machine has no {axis} axis",
     "give it one in machine.toml, or run with --axes {wanted}",
 )
+INDEXER = Fault("indexer", "the locked axis {axis} moves {how} only", "[AXIS_{axis}]LOCKING_INDEXER_JOINT locks it")
 BAD_VALUE = Fault("bad-value", "{word}{value:g} is out of range: {wanted}")
 NOT_INTEGER = Fault("not-integer", "{word}{value:g} must be a whole number")
 MISPLACED_LABEL = Fault("misplaced-label", "N must be the first word of a block")

@@ -193,5 +193,7 @@ class Dialect(NamedTuple):
     no_variable: str  # hint for numbers outside all ranges
     cutter: CutterRules = CutterRules()
     axes: str = "XYZ"  # of the machine that serves when none is given
+    takes_ini: bool = False  # LinuxCNC's configuration moves its interpreter
+    table_unit: float = 1.0  # mm in a unit of LinuxCNC's tool table, which does not name its own
     parameters: range | None = None  # that a parameter file may hold, if not the machine's own
     tools: tuple[Tool, ...] = ()  # that this machine has, if not the built-in ones

@@ -10,12 +10,15 @@ import re
 import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar, get_args, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_args, get_type_hints
 
 import msgspec
 from msgspec import Meta
 
 from aircut.machine.tools import EMPTY, Tool
+
+if TYPE_CHECKING:
+    from aircut.machine.inifile import Ini
 
 AXES = "xyzabc"  # programmable
 LINEAR = "xyz"
@@ -221,6 +224,9 @@ class Machine:
         self.library = tools  # the tools as given, before what programs have changed
         self.key: str | None = None  # opens encrypted macros
         self.variables: dict[int, float] = {}
+        self.parameters: dict[int, float] | None = None  # of a parameter file, inches: in LinuxCNC's language alone
+        self.slots: list[Tool] | None = None  # the tool table's lines, from slot 0: in LinuxCNC's language alone
+        self.ini: Ini | None = None  # LinuxCNC's configuration
 
     @property
     def letters(self) -> str:

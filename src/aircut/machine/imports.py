@@ -107,6 +107,14 @@ def read_library(path: Path, unit_mm: float = 1.0) -> Library:
     return Library(toml(path, data), ())
 
 
+def read_slots(path: Path, unit_mm: float) -> list[Tool] | None:
+    """The tools of a LinuxCNC table by slot; None for a library of another format. Raises MachineError."""
+    data = content(path)
+    if path.suffix.lower() == ".tbl" or (path.suffix.lower() != ".toml" and looks_like_table(data)):
+        return tooltable.slots(data.decode("utf-8", "replace"), unit_mm)
+    return None
+
+
 def write_tools(path: Path, tools: dict[int, Tool]) -> None:
     """Write a tools.toml whole or not at all; `read_tools` gives the same tools again.
 
@@ -204,9 +212,9 @@ def table(path: Path, data: bytes, unit_mm: float) -> Library:
     """The tools of a LinuxCNC table. Bytes that are not UTF-8 can only stand in a name, and are replaced."""
     found = Collector(path)
     for line, tool, fault in tooltable.read(data.decode("utf-8", "replace"), unit_mm):
-        if fault:
-            found.warn(f":{line}", fault if tool else f"{fault}: line skipped")
-        if tool:
+        if tool is None:
+            found.warn(f":{line}", f"{fault}: line skipped")
+        else:
             found.add(f":{line}", tool)
     return found.library()
 

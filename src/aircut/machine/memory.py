@@ -8,6 +8,7 @@ machine stores them: mm and degrees.
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -23,6 +24,8 @@ PERSISTENT = (
     *(5220 + 20 * system + axis for system in range(9) for axis in range(1, 7)),
     5220,
 )
+#: A line of a parameter file, as LinuxCNC reads it: what follows the second number does not count.
+ENTRY = re.compile(r"\s*([+-]?\d{1,9})(?!\d)\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)", re.ASCII | re.IGNORECASE)
 #: Tables that the user fills in and programs read.
 GIVEN = (*range(100, 500), *range(6000, 7000))
 
@@ -46,11 +49,10 @@ def read_parameters(path: Path, known: Iterable[int]) -> dict[int, float]:
         raise MachineError(f"{path}: {error.strerror}") from None
     last = 0
     for at, line in enumerate(text.splitlines(), 1):
-        words = line.split()
-        try:
-            number, value = int(words[0]), float(words[1])
-        except (IndexError, ValueError):
+        found = ENTRY.match(line)
+        if found is None:
             continue
+        number, value = int(found[1]), float(found[2])
         if number <= last:
             raise MachineError(f"{path}:{at}: variable {number} is out of order")
         if number not in known:

@@ -15,25 +15,26 @@ from collections.abc import Iterator
 
 import msgspec
 
-from aircut.machine.tools import Tool
+from aircut.machine.tools import EMPTY, Tool
 
 NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?", re.ASCII | re.IGNORECASE)
 WHOLE = re.compile(r"[+-]?\d{1,9}", re.ASCII)
 
 #: Words of lengths, and where they go in a Tool.
-LENGTHS = {"D": "diameter", "X": "x", "Y": "y", "Z": "z"}
+LENGTHS = {"D": "diameter", **{letter: letter.lower() for letter in "XYZUVW"}}
 #: Words of a turning tool: front angle and back angle in degrees, orientation 1 to 9.
 TURNING = {"I": "p1", "J": "p2", "Q": "p3"}
+ANGLES = {letter: letter.lower() for letter in "ABC"}
 WHOLE_WORDS = "TPQ"
-DROPPED = "ABCUVW"  # offsets that a Tool has no place for
 LATHE = 8
+UNUSED = Tool(-1)  # in a slot of LinuxCNC's whose line is at fault
 
 
 def read(text: str, unit_mm: float) -> Iterator[tuple[int, Tool | None, str]]:
     """Each line that is not blank: its number from 1, its tool, and what was wrong with it.
 
     unit_mm: mm in one of the table's units of length.
-    Without a tool the line is skipped; with a tool and a fault, some word of it is dropped.
+    Without a tool the line is skipped.
     The comment is the name, P the slot; I, J and Q become parameters 1 to 3 and make it
     a lathe tool (there is no other place for them).
     """
@@ -42,18 +43,29 @@ def read(text: str, unit_mm: float) -> Iterator[tuple[int, Tool | None, str]]:
         if not words.strip():
             continue
         try:
-            tool, fault = entry(words.split(), comment.strip(), unit_mm)
+            yield number, entry(words.split(), comment.strip(), unit_mm), ""
         except ValueError as error:
-            tool, fault = None, str(error)
-        yield number, tool, fault
+            yield number, None, str(error)
 
 
-def entry(words: list[str], name: str, unit_mm: float) -> tuple[Tool, str]:
-    """The tool of a line's words, and what of it is dropped. Raises ValueError."""
+def slots(text: str, unit_mm: float) -> list[Tool]:
+    """The tools by LinuxCNC's slots: a line with a P word has the next one from 1; one without is in the spindle, 0."""
+    found = [EMPTY]
+    lines = text.split("\n")
+    for number, tool, _ in read(text, unit_mm):
+        if any(word[0] in "Pp" for word in lines[number - 1].partition(";")[0].split()):
+            found.append(tool or UNUSED)
+        elif tool:
+            found[0] = tool
+    return found
+
+
+def entry(words: list[str], name: str, unit_mm: float) -> Tool:
+    """The tool of a line's words. Raises ValueError."""
     values: dict[str, float] = {}
     for word in words:
         letter, number = word[0].upper(), word[1:]
-        if letter not in "TP" and letter not in LENGTHS and letter not in TURNING and letter not in DROPPED:
+        if letter not in "TP" and letter not in LENGTHS and letter not in {**TURNING, **ANGLES}:
             raise ValueError(f"unknown word {word[:20]}")
         if not (WHOLE if letter in WHOLE_WORDS else NUMBER).fullmatch(number):
             raise ValueError(f"{word[:20]} is not a word with {'a whole' if letter in WHOLE_WORDS else 'a'} number")
@@ -62,10 +74,9 @@ def entry(words: list[str], name: str, unit_mm: float) -> tuple[Tool, str]:
         raise ValueError("no T word above 0")
     # Rounding to 1e-9 mm takes away what binary adds to 0.125 * 25.4.
     fields = {field: round(values[w] * unit_mm, 9) for w, field in LENGTHS.items() if w in values}
-    fields |= {field: values[w] for w, field in TURNING.items() if w in values}
+    fields |= {field: values[w] for w, field in (TURNING | ANGLES).items() if w in values}
     if not all(math.isfinite(value) for value in fields.values()):
         raise ValueError("a number is too large")
     turning = any(values.get(w) for w in TURNING)
     tool = Tool(int(values["T"]), name, slot=max(int(values.get("P", 0.0)), 0), type=LATHE if turning else 0)
-    dropped = [w for w in DROPPED if values.get(w)]
-    return msgspec.structs.replace(tool, **fields), f"no place for {', '.join(dropped)}: dropped" if dropped else ""
+    return msgspec.structs.replace(tool, **fields)

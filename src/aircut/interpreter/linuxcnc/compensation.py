@@ -65,6 +65,8 @@ def of_table(side: int, m: State, w: Words) -> None:
             raise Refusal(F.BAD_VALUE, "d", word="D", value=w["d"], wanted="a tool's number")
         slot = m.slot_of(number)
     tool = m.slots[slot]
+    if tool.p3 not in (0.0, 9.0) and m.plane_code != 180:
+        raise Refusal(F.COMPENSATION_L, "d")
     begin(m, side, tool.diameter / 2.0, int(tool.p3) if m.plane == 1 else 0)
 
 

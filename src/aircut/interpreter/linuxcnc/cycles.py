@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import NamedTuple
 
-from aircut.canon import BY_HAND, EXACT_PATH
+from aircut.canon import BY_HAND
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.geometry.arcs import PLANE_AXES
@@ -29,9 +29,9 @@ from aircut.interpreter.cycles import (
     drill_and_dwell,
 )
 from aircut.interpreter.drilling import DEPTH, STARTS, Sticky
-from aircut.interpreter.linuxcnc.modes import tell_blending
 from aircut.interpreter.linuxcnc.motion import CENTER_WORDS, FEED, TRAVERSE, go, goal, wrong
 from aircut.interpreter.linuxcnc.state import NINE, State
+from aircut.interpreter.linuxcnc.turning import begin_exact, end_exact
 from aircut.interpreter.state import INCH
 from aircut.interpreter.table import Code, Group, Order, Words
 
@@ -163,9 +163,7 @@ def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, m: State, w: W
         to_height(m, TRAVERSE, hole.top)
         height = hole.top
         hole = hole._replace(clear=hole.top)
-    if m.path_mode != 61:
-        m.out.event("SET_MOTION_CONTROL_MODE", "EXACT_PATH")
-    flags, m.flags = m.flags, EXACT_PATH
+    flags = begin_exact(m)
     for at in range(repeats):
         if at or height <= hole.top:
             height = hole.clear
@@ -211,12 +209,7 @@ def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, m: State, w: W
                         m.out.event("ENABLE_FEED_OVERRIDE")
                     if overridden[1]:
                         m.out.event("ENABLE_SPEED_OVERRIDE", 0)
-    m.flags = flags
-    if m.path_mode == 611:
-        m.out.event("SET_MOTION_CONTROL_MODE", "EXACT_STOP")
-        m.out.event("SET_NAIVECAM_TOLERANCE", m.thinning)
-    elif m.path_mode == 64:
-        tell_blending(m)
+    end_exact(m, flags)
 
 
 def by_hand(m: State, height: float) -> None:

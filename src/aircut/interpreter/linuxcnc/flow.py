@@ -17,7 +17,7 @@ from aircut.interpreter.linuxcnc.arranging import whole
 from aircut.interpreter.linuxcnc.blocks import OLine, arguments, brackets
 from aircut.interpreter.linuxcnc.places import EVALUATION, explained
 from aircut.interpreter.linuxcnc.saving import restore_call
-from aircut.interpreter.linuxcnc.state import LOCALS
+from aircut.interpreter.linuxcnc.state import ARGUMENTS, LOCALS
 
 if TYPE_CHECKING:
     from aircut.interpreter.linuxcnc.files import Text
@@ -68,6 +68,12 @@ class Search:
 
 def refuse(what: str, hint: str = "") -> Refusal:
     return Refusal(F.O_WORD, what=what, hint=hint)
+
+
+def bar_fanuc(run: Interpreter) -> None:
+    """Raises Refusal where the INI file forbids M98 and bare O numbers."""
+    if run.state.ini.no_fanuc:
+        raise refuse("M98 and bare O numbers are switched off", "[RS274NGC]DISABLE_FANUC_STYLE_SUB is 1")
 
 
 class Flow:
@@ -306,7 +312,9 @@ class Flow:
             m.numbered[1 : LOCALS + 1] = [*values, *[0.0] * (LOCALS - len(values))]
         self.stack.append(Level(run.unit, run.next_line, self.sub, kept, m.scope, name, fanuc, m.saved, count))
         m.calls = len(self.stack)
-        m.scope, m.saved = {}, None
+        counted = m.ini.counts_arguments and values is not None
+        m.scope = {ARGUMENTS: float(len(values or ()))} if counted else {}
+        m.saved = None
         self.sub = name
         known = self.marks.get(name)
         if known is not None:
@@ -345,12 +353,14 @@ class Flow:
 
     def bare(self, line: OLine, name: str, sought: bool = False) -> None:
         """A number alone: where M98 enters; nothing to do when it is run into, but in a subroutine of CALL."""
+        bar_fanuc(self.run)
         self.nothing(line)
         if self.stack and not self.stack[-1].fanuc:
             raise refuse(f"{name} is not for this kind of call", KINDS)
 
     def m98(self, name: str, count: int) -> None:
         """M98: call a bare number, so many times. Raises Refusal."""
+        bar_fanuc(self.run)
         if count > 0:
             self.enter(name, None, count)
 

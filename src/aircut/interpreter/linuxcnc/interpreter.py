@@ -103,8 +103,8 @@ class Interpreter(Run):
             unrun.check(self, self.broken)
         m.out.drop()
         m.out.line = 0
-        m.out.event("ON_RESET")
-        m.out.event("ON_RESET")
+        for _ in range(m.ini.resets):
+            m.out.event("ON_RESET")
         yield m.out.take()
 
     def lines(self) -> Generator[Chunk | Request, Any, None]:
@@ -253,7 +253,7 @@ class Interpreter(Run):
             self.perform(steps, words)
 
     def check_axes(self, block: Block) -> None:
-        """Raises Refusal where a word names U, V or W, and the machine has no such axis: then it is no letter at all."""
+        """Raises Refusal where a word names U, V or W, and the machine has no such axis: it is no letter then."""
         for letter in block.letters:
             if letter in AUXILIARY and letter not in self.machine.auxiliary:
                 raise Refusal(
@@ -304,6 +304,7 @@ class Interpreter(Run):
         m.words = words
         m.machine_frame = False
         m.changed = None
+        before = self.modal, m.motion_name
         for nth, row in enumerate(steps.codes):
             if row.nameless:
                 self.modal = self.dialect.codes["g80"]
@@ -320,6 +321,9 @@ class Interpreter(Run):
             except Refusal as refusal:
                 refusal.values.setdefault("code", row.name)  # the word to show
                 raise
+            if m.indexed:  # LinuxCNC does not note the mode of a move of a locked axis
+                m.indexed = False
+                self.modal, m.motion_name = before
             if talk is not None:
                 self.talk = (talk, steps._replace(codes=steps.codes[nth + 1 :]), words)
                 return
@@ -400,9 +404,11 @@ class Interpreter(Run):
         return self.state.logs.files
 
     def remembered(self) -> dict[int, float]:
-        """The parameters that were given, and those that outlive every run (inches, degrees)."""
-        numbers = sorted({*self.machine.variables, *starting.PERSISTENT})
-        return {number: self.state.numbered[number] for number in numbers if number < len(self.state.numbered)}
+        """The parameters that were given, and those that outlive every run: in inches for a parameter file, else in mm.
+
+        Source: the canonical listing, section 8.
+        """
+        return starting.remembered(self.state)
 
     # --- files
 

@@ -70,6 +70,8 @@ LINUXCNC = Dialect(
     settings=offsets.SETTINGS,
     no_variable="parameters are #1 to #5601",
     axes="XYZABC",
+    takes_ini=True,
+    table_unit=THEIR_INCH,
     parameters=range(1, LAST + 1),
     cutter=CutterRules(straight=0.05, at_once=compensation.AT_ONCE, plunge_first=False),
     tools=TOOLS,

@@ -12,6 +12,7 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.linuxcnc.motion import wrong
 from aircut.interpreter.linuxcnc.state import LINEAR, State
+from aircut.interpreter.linuxcnc.turning import tell_blending
 from aircut.interpreter.state import INCH
 from aircut.interpreter.table import Code, Group, Order, Words
 
@@ -96,7 +97,7 @@ def constant_revolutions(m: State, w: Words) -> None:
 def orient(m: State, w: Words) -> None:
     """M19: turn the spindle to R degrees, and wait for it with Q."""
     if "r" in w or "p" in w:
-        m.out.event("ORIENT_SPINDLE", 0, w.get("r", 0.0), int(w.get("p", 0.0)))
+        m.out.event("ORIENT_SPINDLE", 0, w.get("r", 0.0) + m.ini.orient, int(w.get("p", 0.0)))
     if "q" in w:
         m.out.event("WAIT_ORIENT_COMPLETE", 0, w["q"])
 
@@ -187,11 +188,6 @@ def blending(m: State, w: Words) -> None:
     m.blend = m.length(w, "p")
     m.thinning = m.length(w, "q", m.blend)
     tell_blending(m)
-
-
-def tell_blending(m: State) -> None:
-    m.out.event("SET_MOTION_CONTROL_BLEND", m.blend)
-    m.out.event("SET_NAIVECAM_TOLERANCE", m.thinning)
 
 
 # --- coolant, overrides, stops

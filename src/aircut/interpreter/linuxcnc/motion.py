@@ -14,7 +14,17 @@ from aircut.canon import EXACT_STOP, INVERSE_TIME, Kind
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.geometry import arcs
-from aircut.interpreter.linuxcnc.state import G28, G30, NUMBERED_NINE, PROBED, TRIPPED, State
+from aircut.interpreter.linuxcnc.state import G28, G30, NINE, NUMBERED_NINE, PROBED, TRIPPED, State
+from aircut.interpreter.linuxcnc.turning import (
+    TURN,
+    bar_indexers,
+    begin_exact,
+    check_turns,
+    end_exact,
+    indexed,
+    wrap,
+    wrap_machine,
+)
 from aircut.interpreter.probing import FAILURES, SUCCESS
 from aircut.interpreter.requests import Probe as ProbeRequest
 from aircut.interpreter.requests import Probed, Request
@@ -24,8 +34,7 @@ from aircut.interpreter.table import Code, Group, Order, Words
 TRAVERSE, FEED, PROBE = int(Kind.TRAVERSE), int(Kind.FEED), int(Kind.PROBE)
 CENTER_WORDS = "ijk"
 SMALLEST = 0.00127  # mm: a radius below, or a half chord beyond R by more, is refused
-SPREAD = {1.0: 2 * sqrt(2) * 0.01, INCH: 2 * sqrt(2) * 0.001 * INCH}  # mm by which an arc's radii may differ
-SPREAD_SHARE = 0.001  # or this part of the larger
+SPREAD_SHARE = 0.001  # part of the larger radius by which an arc's radii may differ, beyond the INI's tolerance
 SPREAD_MOST = 100  # but never this many times
 SLOWEST = 0.1  # program units a minute
 TINY = 1e-7
@@ -37,14 +46,18 @@ def wrong(what: str, hint: str = "") -> Refusal:
     return Refusal(F.WRONG_STATE, what=what, hint=hint)
 
 
-def goal(m: State, w: Words) -> list[float]:
+def goal(m: State, w: Words, rapid: bool = False) -> list[float]:
     """Where the axis words lead, in the program's frame. Raises Refusal."""
+    if m.ini.indexers and not rapid:
+        bar_indexers(m, w)
     place = m.position[:]
     if m.machine_frame:
         return machine_goal(m, w)
     for i, letter in NUMBERED_NINE:
         if letter in w:
             place[i] = m.axis(w, i) + (0.0 if m.absolute else place[i])
+    if m.ini.wrapped and m.absolute:
+        wrap(m, w, place)
     if "@" in w or "^" in w:
         polar(m, w, place)
     return place
@@ -57,6 +70,10 @@ def machine_goal(m: State, w: Words) -> list[float]:
         if letter in w:
             space[i] = m.axis(w, i) - (m.tool_offset[i] if i not in (3, 4, 5) else 0.0)
     place = m.to_program(space)
+    check_turns(m, w)
+    for i in m.ini.wrapped:
+        if NINE[i] in w:
+            place[i] = wrap_machine(m, i, m.position[i], w[NINE[i]])
     return [place[i] if i < 2 or letter in w else m.position[i] for i, letter in NUMBERED_NINE] if m.rotation else [
         place[i] if letter in w else m.position[i] for i, letter in NUMBERED_NINE
     ]  # fmt: skip
@@ -145,9 +162,15 @@ def straight(kind: int, m: State, w: Words) -> None:
     """G0 and G1."""
     if kind == FEED:
         check_feed(m, w)
-    place = goal(m, w)
+    place = goal(m, w, kind == TRAVERSE)
     speed = speed_of(m, w, "G1", length_of(m, place)) if kind == FEED else 0.0
-    go(m, kind, place, speed, feed_flags(m))
+    if kind == TRAVERSE and m.ini.indexers and indexed(m, w):
+        flags = begin_exact(m)
+        go(m, kind, place)
+        end_exact(m, flags)
+        m.indexed = True
+    else:
+        go(m, kind, place, speed, feed_flags(m))
     m.arc_refused = False
 
 
@@ -216,7 +239,7 @@ def by_center(
     if first < SMALLEST or last < SMALLEST:
         raise Refusal(F.ARC_ZERO_RADIUS)
     gap = abs(first - last)
-    spread = SPREAD[m.unit]
+    spread = m.ini.tolerance[m.unit]
     if gap > SPREAD_MOST * spread or (gap > spread and gap > SPREAD_SHARE * max(first, last)):
         raise Refusal(F.ARC_RADIUS_MISMATCH, start=first / m.unit, end=last / m.unit, difference=gap / m.unit,
                       unit="in" if m.unit == INCH else "mm")  # fmt: skip
@@ -291,20 +314,37 @@ def go_home(stored: int, m: State, w: Words) -> None:
     """G28, G30: to the point given, then to the stored point, in the named axes if any are. Raises Refusal."""
     if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="G28 or G30")
-    place = goal(m, w)
-    go(m, TRAVERSE, place)
-    home = m.to_program([
-        h - (m.tool_offset[i] if i not in (3, 4, 5) else 0.0) for i, h in enumerate(m.stored(stored))
-    ])  # fmt: skip
+    place = goal(m, w, rapid=True)
+    index_and_go(m, place)
+    home = home_of(m, stored)
     every = not any(letter in w for _, letter in NUMBERED_NINE)
-    go(m, TRAVERSE, [home[i] if every or letter in w else place[i] for i, letter in NUMBERED_NINE])
+    index_and_go(m, [home[i] if every or letter in w else place[i] for i, letter in NUMBERED_NINE])
+
+
+def home_of(m: State, stored: int) -> list[float]:
+    """A stored point in the program's frame, as it is reached from the present position."""
+    place = m.stored(stored)
+    home = m.to_program([h - (m.tool_offset[i] if i not in (3, 4, 5) else 0.0) for i, h in enumerate(place)])
+    for i in m.ini.wrapped:
+        home[i] = wrap_machine(m, i, m.position[i], place[i])
+    return home
+
+
+def index_and_go(m: State, place: list[float]) -> None:
+    """Traverse to a point: first the locked axes, each alone."""
+    for i in sorted(m.ini.indexers):
+        if place[i] != m.position[i]:
+            flags = begin_exact(m)
+            go(m, TRAVERSE, [*m.position[:i], place[i], *m.position[i + 1 :]])
+            end_exact(m, flags)
+    go(m, TRAVERSE, place)
 
 
 def store_home(stored: int, m: State, w: Words) -> None:
     """G28.1, G30.1: remember where the machine is. Raises Refusal."""
     if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="G28.1")
-    m.store(stored, m.machine_position())
+    m.store(stored, [p % TURN if i in m.ini.wrapped else p for i, p in enumerate(m.machine_position())])
 
 
 move = partial(Code, group=Group.MOTION, order=Order.MOTION, axes=True, modal=True)

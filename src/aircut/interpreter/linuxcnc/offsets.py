@@ -14,6 +14,7 @@ from aircut.diagnostics import faults as F
 from aircut.interpreter.linuxcnc.modes import said
 from aircut.interpreter.linuxcnc.motion import wrong
 from aircut.interpreter.linuxcnc.state import G92, LINEAR, NUMBERED_NINE, ORIGINS, STEP, SYSTEM, State
+from aircut.interpreter.linuxcnc.turning import check_turns
 from aircut.interpreter.state import EQUAL, INCH
 from aircut.interpreter.table import Code, Group, Order, Words
 
@@ -60,6 +61,7 @@ def bar_shift(m: State) -> None:
 def set_here(m: State, w: Words) -> None:
     """G92: the present position reads as given. Raises Refusal."""
     bar_shift(m)
+    check_turns(m, w)
     shift = m.shift[:]
     for i, letter in NUMBERED_NINE:
         if letter in w:
@@ -70,6 +72,7 @@ def set_here(m: State, w: Words) -> None:
 def set_local(m: State, w: Words) -> None:
     """G52: the offset itself. Raises Refusal."""
     bar_shift(m)
+    check_turns(m, w)
     shift = m.shift[:]
     for i, letter in NUMBERED_NINE:
         if letter in w:
@@ -146,6 +149,7 @@ def set_system(here: bool, m: State, w: Words) -> None:
         m.numbered[first + 9] = w["r"]
     rotation = m.numbered[first + 9]
     if here:
+        check_turns(m, w)
         store_here(m, w, first, rotation)
     else:
         for i, letter in NUMBERED_NINE:
@@ -213,7 +217,7 @@ def set_tool(kind: int, m: State, w: Words) -> None:
         changes["p3"] = float(round(w["q"]))
     tool = m.slots[slot] = replace(tool, **changes)
     tell_tool(m, slot)
-    if slot == m.slot:
+    if slot == m.slot and not m.ini.random:
         m.slots[0] = tool
         tell_tool(m, 0)
         m.show_tool()

@@ -6,7 +6,9 @@ Source: the canonical listing, section 3.
 from __future__ import annotations
 
 from aircut.interpreter.linuxcnc.offsets import tell_rotation, tell_shift, tell_system
-from aircut.interpreter.linuxcnc.state import G92, ORIGINS, STEP, SYSTEM, State
+from aircut.interpreter.linuxcnc.state import G92, KEPT_LENGTHS, ORIGINS, POSITION, STEP, SYSTEM, State
+from aircut.interpreter.state import INCH
+from aircut.machine import memory
 
 SYSTEMS = 9
 #: Parameters that outlive every run. Source: the canonical listing, section 8.
@@ -20,13 +22,18 @@ PERSISTENT = (
 
 def begin(m: State) -> None:
     """Take systems and offsets from the parameters, and tell them."""
+    if m.ini.forgets_shift:
+        m.numbered[G92 : G92 + 10] = [0.0] * 10
     number = m.numbered[SYSTEM]
     m.system = int(number) - 1 if 1 <= number < SYSTEMS + 1 else 0
     m.numbered[SYSTEM] = m.system + 1.0
     m.load_system()
     if m.numbered[G92] != 0.0:
         m.set_shift(m.stored(G92 + 1))
-    m.position = m.to_program([0.0] * 9)
+    if m.ini.forgets_shift:
+        m.rotation = 0.0  # LinuxCNC forgets it too, until a system is chosen
+    # LinuxCNC starts at machine zero, but disregards the rotation in this, and U, V and W.
+    m.position = [*(0.0 - o - s for o, s in zip(m.origin[:6], m.shift, strict=False)), 0.0, 0.0, 0.0]
     m.told = m.position[:]
     m.out.event("USE_LENGTH_UNITS", "MM")
     tell_system(m)
@@ -35,9 +42,21 @@ def begin(m: State) -> None:
     m.out.event("SET_FEED_REFERENCE", "XYZ")
 
 
+def remembered(m: State) -> dict[int, float]:
+    """What outlives the run: for a parameter file as programs see it, for a machine's folder in mm."""
+    machine = m.machine
+    kept = {number: m.numbered[number] for number in sorted({*(machine.parameters or ()), *PERSISTENT})}
+    kept |= {n: m.shown(n - POSITION) for n in kept if POSITION <= n < POSITION + 9}
+    if machine.parameters is None:
+        kept = {n: v * INCH if n in KEPT_LENGTHS else v for n, v in kept.items() if n in memory.PERSISTENT}
+    return kept
+
+
 def finish(m: State) -> None:
     """M2, M30: the modes go back to their start."""
     out = m.out
+    if m.ini.forgets_shift:
+        m.numbered[G92 : G92 + 10] = [0.0] * 10
     m.system = 0
     m.numbered[SYSTEM] = 1.0
     m.load_system()

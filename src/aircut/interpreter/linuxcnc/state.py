@@ -17,6 +17,7 @@ from aircut.interpreter import state as house
 from aircut.interpreter.linuxcnc.logs import Logs
 from aircut.interpreter.state import INCH
 from aircut.interpreter.table import Code
+from aircut.machine.inifile import NO_INI
 from aircut.machine.tools import EMPTY, Tool
 
 NINE = "xyzabcuvw"
@@ -29,8 +30,13 @@ READ_ONLY = (*range(5400, 5414), *range(POSITION, POSITION + 9))
 G28, G30, G92, SYSTEM, ORIGINS, STEP = 5161, 5181, 5210, 5220, 5221, 20
 PROBED, TRIPPED = 5061, 5070
 TOOL_DATA = 5400
+#: Stored lengths: G28, G30, G92 and the work systems, each along X Y Z U V W.
+KEPT_LENGTHS = frozenset(
+    first + i for first in (G28, G30, G92 + 1, *(ORIGINS + STEP * n for n in range(9))) for i in LINEAR
+)
 DEBUGGING = 5599
 FAULTS = (5600, 5601)  # of the tool changer
+ARGUMENTS = "n_args"  # name of the number of a call's arguments, where the INI file wants it
 INPUT = 5399  # what M66 read
 
 
@@ -42,11 +48,10 @@ class State(house.State):
 
     def __init__(self, dialect: Any, machine: Any, warn: Any) -> None:
         super().__init__(dialect, machine, warn)
+        self.ini = machine.ini or NO_INI
         self.position = [0.0] * 9
         self.numbered = [0.0] * (LAST + 1)
-        for number, value in machine.variables.items():
-            if 0 < number <= LAST:
-                self.numbered[number] = value
+        self.numbered_of(machine)
         self.numbered[DEBUGGING] = 1.0
         self.origin = [0.0] * 9
         self.rotation = 0.0  # degrees
@@ -56,8 +61,9 @@ class State(house.State):
         #: so LinuxCNC's stand-alone interpreter remembers it.
         self.told = [0.0] * 9
         self.stale = False  # the position is taken from there before the next block
-        self.slots: list[Tool] = [EMPTY, *machine.tools.values()]  # slot 0 is the spindle
-        self.slot = 1  # of the tool in the spindle, before any change
+        self.slots: list[Tool] = list(machine.slots or (EMPTY, *machine.tools.values()))  # slot 0 is the spindle
+        self.show_tool()
+        self.slot = min(1, len(self.slots) - 1)  # of the tool in the spindle, before any change
         self.changed: Tool | None = None  # by M6 or M61 of this block
         self.selected_slot = -1
         self.gave_feed = 0.0  # the F word in force
@@ -72,6 +78,7 @@ class State(house.State):
         self.css = False
         self.most_revolutions = 0.0  # a minute, G96 D
         self.cutter = 0  # 0, 41, 42
+        self.indexed = False  # this block's G0 has turned a locked axis
         self.arc_refused = False  # right after G40
         self.length_on = False
         self.adaptive = False
@@ -88,6 +95,16 @@ class State(house.State):
         self.finished = False
         self.logs = Logs()
         self.saved: Any = None  # by M70 at this level of calls
+
+    def numbered_of(self, machine: Any) -> None:
+        """Take the parameters before the run: the machine's folder has lengths in mm, a parameter file in inches."""
+        for number, value in machine.variables.items():
+            if number in KEPT_LENGTHS:
+                value /= INCH
+            if 0 < number <= LAST:
+                self.numbered[number] = value
+        for number, value in (machine.parameters or {}).items():
+            self.numbered[number] = value
 
     # --- position
 
@@ -192,12 +209,25 @@ class State(house.State):
             raise Refusal(F.READ_ONLY, what=f"#{number}", title="tool and position are only read")
 
     def read_name(self, name: str) -> float | None:
+        value = self.ini.named(name)
+        if value is not None:
+            return value
         try:
             return super().read_name(name)
         except Refusal:
             if self.defining:
                 return 0.0
             raise
+
+    def exists(self, name: str) -> bool:
+        return super().exists(name) or self.ini.named(name) is not None
+
+    def write_name(self, name: str, value: float | None) -> None:
+        if self.ini.named(name) is not None:
+            raise Refusal(F.READ_ONLY, what=f"#<{name}>", title="a value of the INI file")
+        if name == ARGUMENTS and self.ini.counts_arguments and self.calls:
+            raise Refusal(F.READ_ONLY, what=f"#<{name}>", title="the number of the call's arguments")
+        super().write_name(name, value)
 
     def create(self, name: str) -> None:
         """A name that a line sets can be read behind that, as 0."""
@@ -220,4 +250,6 @@ class State(house.State):
         for slot, tool in enumerate(self.slots):
             if slot and tool.id == number:
                 return slot
+        if self.slots[0].id == number:
+            return 0
         raise Refusal(F.NO_TOOL, "t", tool=number)

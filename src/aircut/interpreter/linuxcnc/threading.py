@@ -45,8 +45,9 @@ def synchronized(m: State, w: Words) -> None:
     """G33: K is the way for a turn of the spindle. Raises Refusal."""
     follows(m, w, "G33")
     pitch = m.length(w, "k")
+    place = goal(m, w)
     start(m, pitch)
-    go(m, FEED, goal(m, w), abs(pitch) * m.speed)
+    go(m, FEED, place, abs(pitch) * m.speed)
     stop(m)
 
 

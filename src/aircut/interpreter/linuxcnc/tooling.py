@@ -9,8 +9,8 @@ from functools import partial
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
-from aircut.interpreter.linuxcnc.motion import wrong
-from aircut.interpreter.linuxcnc.state import NUMBERED_NINE, State
+from aircut.interpreter.linuxcnc.motion import home_of, index_and_go, wrong
+from aircut.interpreter.linuxcnc.state import G30, NUMBERED_NINE, State
 from aircut.interpreter.state import EQUAL
 from aircut.interpreter.table import Code, Group, Order, Words
 
@@ -30,11 +30,25 @@ def change(m: State, w: Words) -> None:
         raise Refusal(F.UNDER_COMPENSATION, what="a tool change")
     slot = max(m.selected_slot, 0)
     m.out.event("START_CHANGE")
-    m.out.event("STOP_SPINDLE_TURNING", 0)
-    m.spindle = 5
+    if not m.ini.spindle_on:
+        m.out.event("STOP_SPINDLE_TURNING", 0)
+        m.spindle = 5
+    if m.ini.quill_up:
+        space = m.to_space(m.position)
+        space[2] = -m.tool_offset[2]
+        out_of_the_way(m, m.to_program(space))
+    if m.ini.at_g30:
+        out_of_the_way(m, home_of(m, G30))
     m.out.event("CHANGE_TOOL", slot)
     m.slots[0] = m.slots[slot]
     load(m, slot)
+
+
+def out_of_the_way(m: State, place: list[float]) -> None:
+    """A move of the tool change itself, which pictures leave out."""
+    m.out.event("COMMENT", "AXIS,hide")
+    index_and_go(m, place)
+    m.out.event("COMMENT", "AXIS,show")
 
 
 def load(m: State, slot: int) -> None:
@@ -74,7 +88,7 @@ def bar(m: State) -> None:
 
 
 def of_tool(m: State, w: Words) -> list[float]:
-    """Offsets of the tool that H names; without H, of the tool that this block brings, or of that in the spindle. Raises Refusal."""
+    """Offsets of the tool that H names; without H, of what this block brings, or of the spindle's. Raises Refusal."""
     if "h" not in w:
         return (m.changed or m.slots[0]).offsets()
     if w["h"] < 0:
