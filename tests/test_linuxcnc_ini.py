@@ -98,6 +98,7 @@ ARCS = [
     for v in ("0.001", "0.01", "0.0282842")
     for arc in ("G2 X10.0035 I5", "G2 X10.012 I5", "G2 X10.06 I5", "G2 X2000.09 I1000", "G2 X2000.11 I1000")
 ]
+ARCS += [(ARCS[0][0], ngc("F100", *["G2 X10 I5", "G2 X0 I-5"] * 9, "G2 X10.012 I5"))]
 ARCS += [
     (section("RS274NGC", f"CENTER_ARC_RADIUS_TOLERANCE_INCH={v}"), ngc("G20", "F10", arc))
     for v in ("0.00004", "0.0005")
@@ -122,7 +123,7 @@ CHANGES = [
 ]  # fmt: skip
 CHANGES += [
     (section("EMCIO", f"RANDOM_TOOLCHANGER={value}"),
-     ngc("T1 M6", "T2 M6", "(debug,#5400 #5403)", "G43", "M61 Q3", "T0", "T2 M6", "G10 L1 P2 Z1", "G43 H1", "T0 M6", "G43"))
+     ngc("T1 M6", "T2 M6", "(debug,#5400 #5403)", "G43", "M61 Q3", "T0", "T2 M6", "G10 L1 P2 Z1", "G43 H1", "T0 M6"))
     for value in (0, 1)
 ]  # fmt: skip
 WRAPPED = section("AXIS_A", "WRAPPED_ROTARY=1")

@@ -42,6 +42,8 @@ class Ini:
         self.wrapped = frozenset(i for i, a in enumerate("ABC", 3) if self.flag(f"AXIS_{a}", "WRAPPED_ROTARY"))
         joints = {i: self.text(f"AXIS_{a}", "LOCKING_INDEXER_JOINT") for i, a in enumerate("ABC", 3)}
         self.indexers = frozenset(i for i, joint in joints.items() if joint and not joint.startswith("-"))
+        usual = all(self.limit(unit) == high for unit, (_, high) in TOLERANCES.items())
+        self.plain = usual and not (self.wrapped or self.indexers)  # moves mean what they do without the file
         self.spindle_on = self.flag("EMCIO", "TOOL_CHANGE_WITH_SPINDLE_ON")
         self.quill_up = self.flag("EMCIO", "TOOL_CHANGE_QUILL_UP")
         self.at_g30 = self.flag("EMCIO", "TOOL_CHANGE_AT_G30")

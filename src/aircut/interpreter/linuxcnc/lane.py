@@ -32,6 +32,7 @@ class Lane(lane.Lane):
             and not m.arc_refused
             and not m.diameter
             and m.rotation == 0.0
+            and m.ini.plain
             and m.plane_code % 10 == 0
             and not any(m.numbered[number] for number in FAULTS)
             and not any(a and b for a, b in zip(m.origin, m.shift, strict=True))  # their sum is exact
