@@ -194,7 +194,8 @@ class Machine:
     tools: by id. own_tools: a library was given, so a tool that is not in it is an
     error (AMB-TC-5). macros: folders searched for macro files, in order.
     variables: numbered variables before the run (mm, degrees); a run that ends
-    hands back what is to be remembered by `remember`.
+    hands back what is to be remembered by `remember`. names: named variables that a
+    language keeps from run to run, in memory alone.
     """
 
     def __init__(
@@ -227,6 +228,7 @@ class Machine:
         self.parameters: dict[int, float] | None = None  # of a parameter file, inches: in LinuxCNC's language alone
         self.slots: list[Tool] | None = None  # the tool table's lines, from slot 0: in LinuxCNC's language alone
         self.ini: Ini | None = None  # LinuxCNC's configuration
+        self.names: dict[str, float] = {}
 
     @property
     def letters(self) -> str:

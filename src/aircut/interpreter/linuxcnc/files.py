@@ -44,7 +44,7 @@ class Text:
         """A clean line. Raises Refusal."""
         known = self.lines.get(at)
         if known is None:
-            text = clean(self.source.text(at), len(self.source.raw(at)))
+            text = clean(self.source.text(at), self.source.length(at))
             known = Line(text.code, text.comment)
             check_number(text.code)
             known.oline = parse_o(text.code)

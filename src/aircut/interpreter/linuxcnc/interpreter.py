@@ -22,7 +22,7 @@ from aircut.interpreter.linuxcnc.files import Line, Text
 from aircut.interpreter.linuxcnc.flow import Flow, Search
 from aircut.interpreter.linuxcnc.lane import Lane
 from aircut.interpreter.linuxcnc.state import FAULTS, State
-from aircut.interpreter.linuxcnc.text import check
+from aircut.interpreter.linuxcnc.text import LONGEST, check, too_long
 from aircut.interpreter.requests import Request
 from aircut.interpreter.running import Log, Run, Settings, Stopped
 from aircut.interpreter.table import Dialect, Group
@@ -51,6 +51,8 @@ class Interpreter(Run):
         self.state = State(dialect, machine, self.warn)
         self.unit = Text(source)
         self.units = {source.name: self.unit}
+        for name, value in machine.names.items():  # kept from the run before
+            self.state.write_name(name, value)
         self.flow = Flow(self)
         self.next_line = 0
         self.shared: dict[str, Block] = {}
@@ -91,6 +93,11 @@ class Interpreter(Run):
             self.tell(F.EMPTY_PROGRAM.at(source.name, Span())._replace(severity=F.END_MISSING.severity))
             yield m.out.take()
             return
+        if source.length(first) > LONGEST:  # found when the file is opened
+            self.line = first
+            self.tell_refusal(too_long(source.length(first)))
+            yield m.out.take()
+            return
         m.out.event("ON_RESET")
         if source.raw(first).strip() == b"%":
             self.percent = True
@@ -101,6 +108,8 @@ class Interpreter(Run):
             pass
         if self.settings.keep_going:
             unrun.check(self, self.broken)
+        locals_ = self.flow.stack[0].scope if self.flow.stack else m.scope
+        self.machine.names = {name: value for name, value in (m.names | locals_).items() if value is not None}
         m.out.drop()
         m.out.line = 0
         for _ in range(m.ini.resets):

@@ -49,7 +49,7 @@ class Lane(lane.Lane):
         m.feed = m.gave_feed * m.unit
         super().prepare(m, line, box)
         self.numbers[plain.ALONE] = plain.STAYS
-        self.numbers[plain.LONGEST] = LONGEST
+        self.numbers[plain.LONGEST] = LONGEST - len("\r\n")
         self.reals[plain.LEAST] = LEAST
         self.reals[plain.SAID] = m.gave_feed
 

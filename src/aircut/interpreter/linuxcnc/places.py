@@ -25,7 +25,7 @@ def span(source: Source, line: int, refusal: Refusal) -> Span:
     """Columns of a fault in a line, from 1."""
     text = source.text(line)
     try:
-        code = clean(text, len(source.raw(line))).code
+        code = clean(text, source.length(line)).code
     except Refusal as raised:  # the line could not even be cleaned: the place is as written
         start, end = raised.where or (0, 1)
         return Span(line + 1, start + 1, end + 1)

@@ -12,8 +12,9 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.language.text import COMMENT, stray_fault
 
-LONGEST = 252  # bytes before the line end
-BLANKS = " \t\r\n\v\f"
+LONGEST = 253  # bytes with the line end, whatever that is
+BLANKS = " \t\r\n"
+TRAILING = BLANKS + "\v\f"
 SMALL = {ord(c): None for c in BLANKS} | {c: c + 32 for c in range(ord("A"), ord("Z") + 1)}
 PIECES = re.compile(r"\(([^()]*)\)|(;.*)|([^();]+)|(.)", re.DOTALL)
 STRANGE = re.compile(r"[^ -z\x01]")
@@ -27,9 +28,10 @@ class Clean(NamedTuple):
 
 
 def clean(text: str, length: int) -> Clean:
-    """Clean one line of this many bytes. Raises Refusal with the place in the line as written."""
+    """Clean one line of this many bytes, its end among them. Raises Refusal with the place in the line as written."""
     if length > LONGEST:
-        raise Refusal(F.LINE_TOO_LONG, where=(0, 1), length=length, limit=LONGEST)
+        raise too_long(length)
+    text = text.rstrip(TRAILING)
     comment = None
     if "(" in text or ";" in text or ")" in text:
         code: list[str] = []
@@ -47,6 +49,10 @@ def clean(text: str, length: int) -> Clean:
     else:
         joined = text.translate(SMALL)
     return Clean(joined, comment)
+
+
+def too_long(length: int) -> Refusal:
+    return Refusal(F.LINE_TOO_LONG, where=(0, 1), length=length, limit=LONGEST)
 
 
 def columns(text: str) -> list[int]:
