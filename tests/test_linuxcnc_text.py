@@ -84,4 +84,4 @@ def test_a_large_file() -> None:
     text = "G21 F1000\n" + "".join(f"G1 X{i % 999} Y[{i % 7}]\n" for i in range(count)) + "M2\n"
     result = aircut.loads(text, "linuxcnc").run()
     assert result.ok and len(result.toolpath) == count
-    assert result.toolpath.ends[-1][:2].tolist() == [(count - 1) % 999, (count - 1) % 7]
+    assert result.toolpath.ends()[-1][:2].tolist() == [(count - 1) % 999, (count - 1) % 7]
