@@ -10,6 +10,7 @@ FLOORS = {
     "kernels": 0,
     "geometry": 0,
     "files": 0,
+    "memory": 0,
     "source": 1,
     "diagnostics": 1,
     "canon": 1,

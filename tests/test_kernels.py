@@ -29,24 +29,24 @@ both = pytest.mark.parametrize("kernel", [scan, twin], ids=["built", "twin"])
 def scanned(kernel, data, batch=1 << 30):
     """All that the kernel says of a text, scanned some lines at a time."""
     lines = data.count(b"\n") + (not data.endswith(b"\n") and bool(data))
-    starts, classes = array("q", bytes(8 * lines)), bytearray(lines)
+    classes = bytearray(lines)
     said = []
     at = 0
     for first in range(0, lines, min(batch, max(lines, 1))):
         count = min(batch, lines - first)
         shapes, values = bytearray(count * scan.SHAPE), array("d", bytes(8 * count * scan.WORDS))
         shape_ends, value_ends = array("i", bytes(4 * count)), array("i", bytes(4 * count))
-        at = kernel.scan(data, at, count, starts, classes, first, shapes, shape_ends, values, value_ends, POWERS)
+        at = kernel.scan(data, at, count, classes, first, shapes, shape_ends, values, value_ends, POWERS)
         shape_at = value_at = 0
         for shape_end, value_end in zip(shape_ends, value_ends, strict=True):
             said.append((bytes(shapes[shape_at:shape_end]), values[value_at:value_end].tobytes()))
             shape_at, value_at = shape_end, value_end
-    return at, starts.tolist(), bytes(classes), said
+    return at, bytes(classes), said
 
 
 def words_of(kernel, text):
     """Class, shape and values of one line."""
-    _, _, classes, said = scanned(kernel, text.encode())
+    _, classes, said = scanned(kernel, text.encode())
     shape, values = said[0]
     return classes[0], shape, list(struct.unpack(f"{len(values) // 8}d", values))
 
@@ -102,16 +102,6 @@ def test_twins_on_lines(texts, batch):
 def test_batches_do_not_matter(kernel, texts, batch):
     data = "\n".join(texts).encode()
     assert scanned(kernel, data, batch) == scanned(kernel, data)
-
-
-@both
-@given(st.lists(st.text("GX1 ;(\r", max_size=5), max_size=6))
-@settings(deadline=None)
-def test_starts_are_those_of_the_lines(kernel, texts):
-    data = "\n".join(texts).encode()
-    _, starts, _, _ = scanned(kernel, data)
-    pieces = data.split(b"\n")[: len(starts)]
-    assert [data[at : at + len(piece)] for at, piece in zip(starts, pieces, strict=True)] == pieces
 
 
 @both

@@ -143,7 +143,7 @@ def test_the_kernel_and_its_twin_agree(seed: int) -> None:
         while numbers[plain.LINE] < len(source):
             before = numbers[plain.LINE]
             kernel.run(
-                source.data, source.starts, len(source), numbers, reals, memoryview(rows).cast("d"),
+                source.data, len(source), numbers, reals, memoryview(rows).cast("d"),
                 memoryview(rows).cast("q"), feeds, places, POWERS, plain.PLACES,
             )  # fmt: skip
             seen.append((bytes(rows), list(numbers), list(reals), list(feeds), list(places)))
@@ -177,10 +177,11 @@ def test_lines_are_found_as_their_words_say(seed: int) -> None:
         plain_line(rng) if rng.random() < 0.8 else rng.choice(pieces) for _ in range(rng.randint(1, 400))
     ).encode() + rng.choice((b"", b"\n"))
     source = Source("x", text)
-    starts, classes, batch = array("q", [0]) * len(source), bytearray(len(source)), Batch(len(source))
-    scan.scan(
-        text, 0, len(source), starts, classes, 0, batch.shapes, batch.shape_ends, batch.values, batch.value_ends, POWERS
-    )
-    assert source.starts == starts
+    classes, batch = bytearray(len(source)), Batch(len(source))
+    scan.scan(text, 0, len(source), classes, 0, batch.shapes, batch.shape_ends, batch.values, batch.value_ends, POWERS)
+    starts = [0, *(at + 1 for at, byte in enumerate(text) if byte == 10)][: len(source)]
+    lines = [*range(len(source)), *rng.sample(range(len(source)), len(source))]
+    assert [source.start(line) for line in lines] == [starts[line] for line in lines]
+    assert [source.line_at(at) for at in starts] == list(range(len(source)))
     for wanted, found in zip(classes, source.classes, strict=True):
         assert wanted == found or (wanted, found) == (scan.OTHER, scan.PLAIN)

@@ -14,10 +14,11 @@ from typing import Any, NamedTuple
 from aircut.canon.commands import COMMANDS
 from aircut.canon.tips import setups_of
 from aircut.canon.toolpath import ROW, Toolpath
+from aircut.memory import fresh
 
 PLACE = Struct("<6d")  # the beginning of a row
 CHUNK = 1 << 16  # moves a chunk
-LARGE = 1 << 22  # bytes from which NumPy's memory is the cheaper one
+LARGE = 1 << 22  # bytes from which memory of its own is the cheaper one
 NAMES = tuple(COMMANDS)
 NUMBERS = {name: number for number, name in enumerate(NAMES)}
 
@@ -239,11 +240,7 @@ class Recorder:
 
 def memory(size: int) -> memoryview:
     """Memory not filled with anything where that is much cheaper."""
-    if size < LARGE:
-        return memoryview(bytearray(size))
-    import numpy as np
-
-    return np.empty(size, np.uint8).data
+    return memoryview(bytearray(size) if size < LARGE else fresh(size))
 
 
 class Recording:

@@ -110,8 +110,9 @@ class Listing:
             file = ROW.unpack_from(rows, first * ROW.size)[12]
             source = self.text(file)
             numbers = array("q", (first, 0, self.count, file, last))
+            data = source.data if source.numbered else b""
             printing.moves(
-                doubles, marks, source.data, source.starts, numbers, reals, self.buffer, printing.HEADS, printing.PAIRS
+                doubles, marks, data, source.counts, numbers, reals, self.buffer, printing.HEADS, printing.PAIRS
             )
             self.count = numbers[printing.COUNT]
             if numbers[printing.USED]:

@@ -123,7 +123,7 @@ class Interpreter(Run):
         m = self.state
         starting.begin(m)
         self.check_structure(self.unit)
-        if self.unit.source.data.startswith(UTF16):
+        if self.unit.source.data[:2] in UTF16:
             self.tell(F.NOT_UTF8.at(self.unit.source.name, Span(1, 1, 2)))
         elif not len(self.unit.source) or not any(self.unit.source.classes):
             self.tell(F.EMPTY_PROGRAM.at(self.unit.source.name, Span()))

@@ -96,10 +96,12 @@ class Lane:
 
     def read(self, source: Source, end: int, space: memoryview) -> None:
         """Let the kernel read lines, up to `end` at most, and write rows into the space."""
+        self.numbers[plain.PLACE] = source.start(self.numbers[plain.LINE])
         plain.run(
-            source.data, source.starts, min(end, source.ended), self.numbers, self.reals, space.cast("d"),
+            source.data, min(end, source.ended), self.numbers, self.reals, space.cast("d"),
             space.cast("q"), self.feeds, self.feed_places, POWERS, plain.PLACES,
         )  # fmt: skip
+        source.passed(self.numbers[plain.LINE], self.numbers[plain.PLACE])
 
     def settle(self, m: State, after: int) -> None:
         """Bring the state up to date; `after` is the line to go on with."""

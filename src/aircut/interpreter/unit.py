@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -103,14 +102,11 @@ class Unit:
         while first < len(classes) and classes[first] == scan.BLANK:
             first += 1
         end = len(classes)
-        at = self.source.data.find(b"%")
-        while at >= 0:
-            line = bisect_right(self.source.starts, at) - 1
+        for line in self.source.lines_with(b"%"):
             if self.source.raw(line).strip() == b"%":
                 if line != first:
                     return (first + 1 if self.percent else first), line
                 self.percent = True
-            at = self.source.data.find(b"%", at + 1)
         return (first + 1 if self.percent else first), end
 
     def marks(self, first: int, end: int) -> Iterator[tuple[int, Mark]]:

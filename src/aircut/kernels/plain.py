@@ -22,7 +22,8 @@ COMPILED = cython.compiled
 LINE, ROWS, FEEDS, MOTION = 0, 1, 2, 3
 # In only.
 ABSOLUTE, ARC_ABSOLUTE, PLANE, FLAGS, TOOL, FILE, AXES, RADIUS, ALONE, LONGEST = 4, 5, 6, 7, 8, 9, 10, 11, 12, 13
-NUMBERS = 14
+PLACE = 14  # in and out: the byte at which the line starts
+NUMBERS = 15
 SETS, STAYS = 1, 2  # of ALONE
 # Places in `reals`: position, offset, low and high limits are six each.
 POSITION, OFFSET, LOW, HIGH, UNIT, FEED, SAID, LEAST = 0, 6, 12, 18, 24, 25, 26, 27
@@ -44,7 +45,6 @@ DIGITS = 15
 @cython.cdivision(True)
 def run(
     data: cython.const[cython.uchar][::1],
-    starts: cython.longlong[::1],
     last: cython.Py_ssize_t,
     numbers: cython.longlong[::1],
     reals: cython.double[::1],
@@ -57,7 +57,7 @@ def run(
 ):
     """Run lines from numbers[LINE] up to `last`, and write what comes of them. Each must end with a line feed.
 
-    data: the program. starts: where its lines start. numbers, reals: the modes and
+    data: the program. numbers, reals: the modes and
     positions (see the places above), brought up to date for where it stops. AXES: letters
     that may stand, by bits. RADIUS: whether R may. ALONE: what G0 and G1 do that stand alone: 0 nothing
     that is known here, SETS the mode, STAYS: a move to where it is.
@@ -68,6 +68,7 @@ def run(
     Lengths mm, angles degrees.
     """
     line: cython.Py_ssize_t = numbers[LINE]
+    start: cython.Py_ssize_t = numbers[PLACE]
     at: cython.Py_ssize_t
     row: cython.Py_ssize_t = 0
     room: cython.Py_ssize_t = len(rows) // WIDTH
@@ -145,7 +146,7 @@ def run(
         high[i] = reals[HIGH + i]
 
     while line < last and row < room and told < tellable:
-        at = starts[line]
+        at = start
         seen = 0  # bits: 0-5 the axes, 6-8 I J K, 9 R, 10 F, 11 G, 12 N, 13 anything at all
         code = motion
         fine = True
@@ -210,15 +211,15 @@ def run(
                     fine = False
                     break
                 code = mantissa
-        if longest > 0:
-            while data[at] != 10:
-                at += 1
-            if at - starts[line] > longest:
-                break
         if not fine:
+            break
+        while data[at] != 10:
+            at += 1
+        if longest > 0 and at - start > longest:
             break
         if seen & 0x0FFF == 0:  # blank, or a number alone
             line += 1
+            start = at + 1
             continue
 
         # What stands here must be a whole move, or a feed.
@@ -333,8 +334,10 @@ def run(
             told += 1
         motion = code
         line += 1
+        start = at + 1
 
     numbers[LINE] = line
+    numbers[PLACE] = start
     numbers[ROWS] = row
     numbers[FEEDS] = told
     numbers[MOTION] = motion

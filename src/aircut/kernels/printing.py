@@ -19,6 +19,7 @@ COMPILED = cython.compiled
 
 WIDTH = 11  # 8-byte places of a row
 LINE = 400  # bytes of a line at most
+BLOCK = 1024  # bytes of a text of which the line feeds are counted together, as in `scan`
 LABEL = 64  # digits of a line's number at most
 LIMIT = 1e15  # numbers from here on are not the kernel's
 PARTS = 2.0**53  # of a fraction: times 625 they fit into 63 bits, and are then 1 / 2**49 of 0.0001 each
@@ -48,7 +49,7 @@ def moves(
     rows: cython.const[cython.double][::1],
     marks: cython.const[cython.longlong][::1],
     data: cython.const[cython.uchar][::1],
-    starts: cython.const[cython.longlong][::1],
+    counts: cython.const[cython.longlong][::1],
     numbers: cython.longlong[::1],
     reals: cython.double[::1],
     out: cython.uchar[::1],
@@ -57,8 +58,9 @@ def moves(
 ):
     """Write rows from numbers[ROW] up to numbers[ROWS], as long as there is room for a line in `out`.
 
-    rows, marks: the same memory, as doubles and as integers: packed rows. data, starts: the text of
-    file numbers[FILE], and where its lines start. reals: see the places above; TURNED is 0.0 where
+    rows, marks: the same memory, as doubles and as integers: packed rows. data, counts: the text of
+    file numbers[FILE], and the line feeds before each of its blocks; no text where no line has a
+    number. reals: see the places above; TURNED is 0.0 where
     there is no rotation. heads, pairs: HEADS and PAIRS.
     """
     row: cython.Py_ssize_t = numbers[ROW]
@@ -68,7 +70,13 @@ def moves(
     file: cython.longlong = numbers[FILE]
     room: cython.Py_ssize_t = len(out) - LINE
     size: cython.Py_ssize_t = len(data)
-    lines: cython.Py_ssize_t = len(starts)
+    blocks: cython.Py_ssize_t = len(counts) - 1
+    length: cython.Py_ssize_t = BLOCK
+    near: cython.Py_ssize_t = 64
+    known: cython.longlong = -1  # a line of which the start is known
+    known_at: cython.Py_ssize_t = 0
+    high: cython.Py_ssize_t
+    middle: cython.Py_ssize_t
     width: cython.Py_ssize_t = WIDTH
     limit: cython.double = LIMIT
     most: cython.Py_ssize_t = LABEL
@@ -152,8 +160,24 @@ def moves(
 
         # The line's own number.
         fine = False
-        if line and line <= lines:
-            place = starts[line - 1]
+        if line and size:
+            line -= 1
+            if known < 0 or line < known or line - known > near:
+                end = 0  # the last block with fewer line feeds before it than lie before the line
+                high = blocks
+                while high - end > 1:
+                    middle = (end + high) // 2
+                    if counts[middle] < line:
+                        end = middle
+                    else:
+                        high = middle
+                known = counts[end]
+                known_at = end * length
+            while known < line and known_at < size:
+                if data[known_at] == 10:
+                    known += 1
+                known_at += 1
+            place = known_at
             while place < size and (data[place] == 32 or data[place] == 9 or data[place] == 47):
                 place += 1
             if place < size and data[place] | 32 == 110:

@@ -1,7 +1,7 @@
 """The bytes of a program: where lines start, what class they are, and the words of those that are plain.
 
-`lines` goes over the whole text once, and takes a line to be plain by its characters;
-`scan` reads the words, and finds the few that are faulty to be OTHER.
+`survey` goes over the whole text once, block by block, and `classify` over the lines that may not be plain: a line
+is taken to be plain by its characters. `scan` reads the words, and finds the few that are faulty to be OTHER.
 
 A plain line holds nothing but words of one letter and a literal number
 (`N10 G1 X1.5 Y-2`), blanks and a `;` comment. Its shape is its letters, with the
@@ -27,7 +27,8 @@ WORDS = 32  # at most in a plain line
 SHAPE = WORDS * 6  # bytes of a shape at most: letter, up to five of a code's number
 
 # Exact powers: a 15-digit integer divided by one is the correctly rounded number.
-BLOCK = 512  # bytes that are looked at together
+BLOCK = 1024  # bytes that are looked at together
+PART = 128  # bytes in which line feeds are counted in a byte
 # By byte: 0 blank, 1 letter of a word, 2 number, 4 comment to the line's end, 8 anything else.
 SORTS = bytes(
     0 if char in "\t\r " else 2 if char in "0123456789.+-" else 4 if char == ";" else
@@ -43,10 +44,9 @@ DIGITS = 15
 @cython.wraparound(False)
 @cython.cdivision(True)
 def scan(
-    data: bytes,
+    data: cython.const[cython.uchar][::1],
     at: cython.Py_ssize_t,
     count: cython.Py_ssize_t,
-    starts: cython.longlong[::1],
     classes: cython.uchar[::1],
     first: cython.Py_ssize_t,
     shapes: cython.uchar[::1],
@@ -57,7 +57,7 @@ def scan(
 ):
     """Scan up to `count` lines from byte `at`; returns the byte after them.
 
-    starts, classes: of the whole file, written from index `first`.
+    classes: of the whole file, written from index `first`.
     shapes, values: the plain lines' shapes and values, end to end; line i of this
     scan has shapes[shape_ends[i-1]:shape_ends[i]], likewise values.
     Sizes: shapes count·SHAPE, values count·WORDS, the ends count. powers: POWERS.
@@ -86,7 +86,6 @@ def scan(
     number: cython.double
 
     while row < count and at < size:
-        starts[first + row] = at
         shape_from = shape_at
         value_from = value_at
         kind = BLANK
@@ -198,83 +197,130 @@ def scan(
 
 @cython.boundscheck(False)
 @cython.wraparound(False)
-def lines(
+def survey(
     data: cython.const[cython.uchar][::1],
-    starts: cython.longlong[::1],
-    classes: cython.uchar[::1],
-    sorts: cython.const[cython.uchar][::1],
+    counts: cython.longlong[::1],
+    plain: cython.uchar[::1],
+    first: cython.Py_ssize_t,
+    last: cython.Py_ssize_t,
 ):
-    """Find all lines: where they start, and their classes by their characters. sorts: SORTS.
+    """Look at the blocks from `first` to before `last`; returns whether there is an N among them.
 
-    A block of bytes that holds only what stands in lines of plain motion is not
-    looked at any closer than for its line feeds.
+    counts: line feeds before each block, and in all; known up to `first`. plain: by block, 1 where all
+    is made of what stands in plain motion, lines begin with a letter, and G has but one digit, or a 0 first.
     """
     size: cython.Py_ssize_t = len(data)
-    at: cython.Py_ssize_t = 0
-    clean_to: cython.Py_ssize_t = 0
-    end: cython.Py_ssize_t
+    block: cython.Py_ssize_t
+    at: cython.Py_ssize_t
     i: cython.Py_ssize_t
-    row: cython.Py_ssize_t = 0
-    block: cython.Py_ssize_t = BLOCK
-    foreign: cython.int
+    end: cython.Py_ssize_t
+    stop: cython.Py_ssize_t
+    length: cython.Py_ssize_t = BLOCK
+    part: cython.Py_ssize_t = PART
+    total: cython.longlong = counts[first]
+    foreign: cython.uchar
+    named: cython.uchar = 0
+    feeds: cython.uchar
     c: cython.uchar
+    d: cython.uchar
+    e: cython.uchar
     low: cython.uchar
-    sort: cython.int
-    before: cython.int
-    kind: cython.int
-    blank: cython.int = BLANK
-    plain: cython.int = PLAIN
-    other: cython.int = OTHER
 
-    while at < size:
-        starts[row] = at
-        if at >= clean_to:
-            # Lines that start within the block before clean_to are made of its bytes up to there.
-            end = at + block if at + block < size else size
-            foreign = 0
-            for i in range(at, end):
+    for block in range(first, last):
+        counts[block] = total
+        at = block * length
+        end = at + length if at + length < size else size
+        foreign = at == 0 and data[0] < 65
+        stop = end
+        if size - 2 < end:  # what stands behind is looked at too
+            stop = size - 2 if size - 2 > at else at
+            foreign = 1
+        while at < stop:
+            feeds = 0
+            for i in range(at, at + part if at + part < stop else stop):
                 c = data[i]
-                low = (c | 32) - 97
+                d = data[i + 1]
+                e = data[i + 2]
+                low = ((c | 32) - 97) & 255
+                feeds += c == 10
+                named |= low == 13
                 foreign |= not (
                     (((c - 43) & 255) <= 14 and c != 44 and c != 47)
                     or c == 10 or c == 32 or c == 13
                     or (c >= 65 and (low <= 2 or low == 5 or low == 6 or ((low - 8) & 255) <= 2
                         or low == 13 or low == 17 or ((low - 23) & 255) <= 2))
                 )  # fmt: skip
-            clean_to = at if foreign else end
-        if at < clean_to:
-            i = at
-            while i < clean_to and data[i] != 10:
-                i += 1
-            c = data[at]
-            if i < clean_to and c >= 65:
-                classes[row] = plain
-                row += 1
-                at = i + 1
-                continue
-        kind = blank
-        before = 0
-        while at < size:
-            c = data[at]
-            if c == 10:
-                break
-            sort = sorts[c]
-            if sort == 4:
-                while at < size and data[at] != 10:
-                    at += 1
-                break
-            if sort == 8 or (sort == 1 and before == 1) or (sort == 2 and before == 0):
-                kind = other
-                while at < size and data[at] != 10:
-                    at += 1
-                break
-            if sort:
-                kind = plain
-                before = sort
+                foreign |= c == 10 and d < 65
+                foreign |= low == 6 and (d < 48 or d > 57 or (d > 48 and e >= 48 and e <= 57))
+            total += feeds
+            at += part
+        for i in range(stop, end):
+            c = data[i]
+            total += c == 10
+            named |= (c | 32) == 110
+        plain[block] = not foreign
+    counts[last] = total
+    return named != 0
+
+
+@cython.boundscheck(False)
+@cython.wraparound(False)
+def classify(
+    data: cython.const[cython.uchar][::1],
+    counts: cython.const[cython.longlong][::1],
+    plain: cython.const[cython.uchar][::1],
+    classes: cython.uchar[::1],
+    sorts: cython.const[cython.uchar][::1],
+):
+    """Find the classes of the lines that are not all in plain blocks, by their characters. sorts: SORTS."""
+    size: cython.Py_ssize_t = len(data)
+    blocks: cython.Py_ssize_t = len(plain)
+    length: cython.Py_ssize_t = BLOCK
+    block: cython.Py_ssize_t
+    at: cython.Py_ssize_t = 0
+    done: cython.Py_ssize_t = 0  # the lines before this byte are classified
+    end: cython.Py_ssize_t
+    row: cython.Py_ssize_t = 0
+    c: cython.uchar
+    sort: cython.int
+    before: cython.int
+    kind: cython.int
+
+    for block in range(blocks):
+        if plain[block]:
+            continue
+        at = block * length
+        end = at + length if at + length < size else size
+        if done > at:
+            at = done
+        else:
+            row = counts[block]
+            while at > done and data[at - 1] != 10:
+                at -= 1
+        while at < end:
+            kind = 0  # BLANK
+            before = 0
+            while at < size:
+                c = data[at]
+                if c == 10:
+                    break
+                sort = sorts[c]
+                if sort == 4:
+                    while at < size and data[at] != 10:
+                        at += 1
+                    break
+                if sort == 8 or (sort == 1 and before == 1) or (sort == 2 and before == 0):
+                    kind = 2  # OTHER
+                    while at < size and data[at] != 10:
+                        at += 1
+                    break
+                if sort:
+                    kind = 1  # PLAIN
+                    before = sort
+                at += 1
+            if before == 1 and kind == 1:
+                kind = 2
+            classes[row] = kind
+            row += 1
             at += 1
-        if before == 1 and kind == plain:
-            kind = other
-        classes[row] = kind
-        row += 1
-        at += 1
-    return row
+        done = at

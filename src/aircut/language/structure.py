@@ -101,7 +101,7 @@ def find_labels(source: Source, block_delete: bool) -> dict[int, list[int]]:
     for match in LABEL.finditer(source.data):
         if not (match[1] and block_delete):
             number = int(match[2].translate(None, b" \t")[:18])
-            labels.setdefault(number, []).append(bisect_right(source.starts, match.start()) - 1)
+            labels.setdefault(number, []).append(source.line_at(match.start()))
     return labels
 
 

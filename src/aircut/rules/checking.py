@@ -34,7 +34,7 @@ def checked(run: Run, policy: Policy) -> Iterator[None]:
 
 def read(page: Page) -> Iterator[Diagnostic]:
     """The rules that read the text when it has run: they know the structure of the RosettaCNC language."""
-    if b"#" in page.low:
+    if b"#" in page.parts:
         from aircut.rules.variables import unset
 
         yield from unset(page)

@@ -62,7 +62,7 @@ class Watch:
         self.cutting = False
         self.place = (0.0, 0.0, 0.0)
         source = run.units[run.files[0]].source
-        self.tilted = TILTED.search(source.data.lower()) is not None
+        self.tilted = any(TILTED.search(text.lower()) for _, text in source.foreign())
 
     def add(self, chunk: Chunk) -> None:
         """Look at one chunk."""

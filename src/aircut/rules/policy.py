@@ -13,7 +13,6 @@ In a program: `(aircut: ignore RULE)` for its line, `(aircut: off RULE)` from it
 from __future__ import annotations
 
 import re
-from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
@@ -125,11 +124,14 @@ def spoken(source: Source) -> list[Directive]:
 
     Those that cannot be understood have no verb, and what is wrong instead of codes.
     """
-    if b"aircut" not in source.data.lower():
-        return []
     found = []
-    for match in DIRECTIVE.finditer(source.data):
-        line = bisect_right(source.starts, match.start())
+    for first, match in (
+        (first, match)
+        for first, text in source.foreign()
+        if b"aircut" in text.lower()
+        for match in DIRECTIVE.finditer(text)
+    ):
+        line = source.line_at(first + match.start()) + 1
         verb, *codes = WORDS.split(match[1].decode("utf-8", "replace").strip().lower()) or [""]
         problem = next(filter(None, map(unknown, codes)), "" if codes else "it names no rule")
         if verb not in ("ignore", "off", "on"):

@@ -18,7 +18,7 @@ from aircut.interpreter.unit import Unit
 from aircut.language.blocks import Block
 from aircut.language.structure import Routine
 from aircut.rules.flow import names
-from aircut.rules.page import Page, small
+from aircut.rules.page import Page, Parts
 
 NULL = rb"#[ \t]*(?:0+(?!\d)|<[ \t]*math\.nan[ \t]*>)"
 ONE = rb"#[ \t]*(?:\d[\d \t]*|<[^>\n]*>)"
@@ -49,8 +49,8 @@ class Uses:
 def unset(page: Page) -> Iterator[Diagnostic]:
     """The first reading of each variable, in each routine, that cannot have been set by then."""
     run, unit = page.run, page.unit
-    found = {routine: uses(page.low, *bounds(unit, routine)) for routine in page.structure.order}
-    others = [uses(small(other), 0, len(other.source.data)) for other in run.units.values() if other is not unit]
+    found = {routine: uses(page.parts, *bounds(unit, routine)) for routine in page.structure.order}
+    others = [uses(Parts(other), 0, len(other.source.data)) for other in run.units.values() if other is not unit]
     told = {(d.file, d.span.line) for d in run.diagnostics if d.severity is Severity.ERROR}
     ways = back_ways(page)
     calls = page.lines(*CALLS)
@@ -86,29 +86,32 @@ def looked_at(page: Page, line: int) -> bool:
 
 def bounds(unit: Unit, routine: Routine) -> tuple[int, int]:
     """First byte of a routine and the byte after its last."""
-    starts = unit.source.starts
-    places = (starts[line] if line < len(starts) else len(unit.source.data) for line in (routine.first, routine.end))
-    first, end = places
+    source = unit.source
+    first, end = (
+        source.start(line) if line < len(source) else len(source.data) for line in (routine.first, routine.end)
+    )
     return first, end
 
 
-def uses(low: bytes, first: int, end: int) -> Uses:
+def uses(parts: Parts, first: int, end: int) -> Uses:
     """The variables of a stretch of text."""
     found = Uses()
     known: set[tuple[bytes, bool]] = set()
-    for match in TOKEN.finditer(low, first, end):
+    for place, match in (
+        (at, match) for at, low in parts for match in TOKEN.finditer(low, max(first - at, 0), max(end - at, 0))
+    ):
         token, sets = match.groups()
         if token is None or (token, sets is None) in known:
             continue
         known.add((token, sets is None))
         name = name_of(token)
         if sets:
-            found.sets.setdefault(name, match.start())
+            found.sets.setdefault(name, place + match.start())
         elif name:
-            found.reads.setdefault(name, match.span(1))
+            found.reads.setdefault(name, (place + match.start(1), place + match.end(1)))
         if not name:
             for inner in re.finditer(rb"#[ \t]*(\d+)", token[1:]):
-                at = match.start() + 1
+                at = place + match.start() + 1
                 found.reads.setdefault(str(int(inner[1][:9])), (at + inner.start(), at + inner.end()))
     return found
 
@@ -140,7 +143,7 @@ def back_ways(page: Page) -> list[tuple[int, int]]:
     ways = [(block.last, block.first) for block in page.structure.blocks if block.kind == "while"]
     for line, targets in page.gotos:
         ways += [(line, at) for at in ((0,) if targets is None else targets) if at <= line]
-    if re.search(rb"m[ \t]*47(?![\d.])", page.low):
+    if page.lines(re.compile(rb"m[ \t]*47(?![\d.])")):
         ways.append((len(page.unit.source), 0))
     return ways
 
@@ -162,7 +165,7 @@ def leads(start: int, end: int, ways: list[tuple[int, int]]) -> bool:
 def diagnostic(page: Page, start: int, end: int, later: int) -> Diagnostic:
     source = page.unit.source
     line = page.line_of(start)
-    column = len(source.data[source.starts[line] : start].decode("utf-8", "replace"))
+    column = len(source.data[source.start(line) : start].decode("utf-8", "replace"))
     written = source.data[start:end].decode("utf-8", "replace").strip()
     how = f"it is set only in line {later + 1}" if later > line else "nothing sets it"
     if later == line:
