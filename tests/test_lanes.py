@@ -121,7 +121,8 @@ def test_the_kernel_and_its_twin_agree(seed: int) -> None:
     rng = random.Random(seed)
     text = "\n".join(plain_line(rng) for _ in range(200)).encode() + b"\n"
     source = Source("x", text)
-    unit = rng.choice((1.0, 25.4))
+    unit, zero = rng.choice((1.0, 25.4)), rng.choice((0.0, -0.0))
+    shift = array("d", [rng.choice((0.0, -0.0, 1.1)) for _ in range(6)])
     states = []
     for kernel in (plain, twin()):
         numbers = array("q", [0] * plain.NUMBERS)
@@ -137,6 +138,7 @@ def test_the_kernel_and_its_twin_agree(seed: int) -> None:
         reals[plain.LOW : plain.UNIT] = array("d", [-500.0] * 6 + [500.0] * 6)
         reals[plain.UNIT], reals[plain.FEED] = unit, 100.0
         reals[plain.LEAST], numbers[plain.LONGEST] = plain.SMALL, seed % 4 and 40
+        reals[plain.ZERO], reals[plain.SHIFT : plain.REALS] = zero, shift
         rows = bytearray(64 * 88)
         feeds, places = array("d", [0.0] * 16), array("q", [0] * 32)
         seen = []

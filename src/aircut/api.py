@@ -139,9 +139,9 @@ class Result:
         m = self._interpreter.state
         return {
             "modes": {(group.name or "").lower(): row.name for group, row in m.modal.items()},
-            "position": dict(zip("xyzabc", m.position, strict=True)),
-            "display": dict(zip("xyzabc", displayed(m), strict=True)),
-            "machine": dict(zip("xyzabc", m.machine_position(), strict=True)),
+            "position": dict(zip("xyzabc", m.position[:6], strict=True)),
+            "display": dict(zip("xyzabc", displayed(m)[:6], strict=True)),
+            "machine": dict(zip("xyzabc", m.machine_position()[:6], strict=True)),
             "feed": m.feed,
             "speed": m.speed,
             "spindle": {3: "clockwise", 4: "counterclockwise"}.get(m.spindle, "off"),

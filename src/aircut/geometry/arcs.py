@@ -67,14 +67,15 @@ def center_of_radius(
     Returns None where no such circle reaches both points.
     Source: NIST RS274/NGC 3.5.3.1.
     """
-    half = hypot(end[0] - start[0], end[1] - start[1]) / 2
+    way = (end[0] - start[0], end[1] - start[1])
+    half = sqrt(way[0] * way[0] + way[1] * way[1]) / 2  # as kernels.plain, to the last bit
     if half - abs(radius) > slack:
         return None
     rise = sqrt(max(0.0, radius * radius - half * half))
     if (radius > 0) != (turn > 0):
         rise = -rise
     # The center lies on the left of the chord for a short counterclockwise arc.
-    along = ((end[0] - start[0]) / (2 * half), (end[1] - start[1]) / (2 * half))
+    along = (way[0] / (2 * half), way[1] / (2 * half))
     return (start[0] + end[0]) / 2 - rise * along[1], (start[1] + end[1]) / 2 + rise * along[0]
 
 

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 MOTIONS = ("G0", "G1", "G2", "G3")
 FEW = 4096  # rows up to which they join those of the general lane
+NO_SHIFT = array("d", [-0.0] * 6)  # what changes no number at all
 
 
 class Lane:
@@ -93,6 +94,8 @@ class Lane:
         reals[plain.UNIT] = m.unit
         reals[plain.FEED] = m.feed
         reals[plain.LEAST] = plain.SMALL
+        reals[plain.ZERO] = -0.0
+        reals[plain.SHIFT : plain.REALS] = NO_SHIFT
 
     def read(self, source: Source, end: int, space: memoryview) -> None:
         """Let the kernel read lines, up to `end` at most, and write rows into the space."""

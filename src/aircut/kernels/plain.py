@@ -25,9 +25,9 @@ ABSOLUTE, ARC_ABSOLUTE, PLANE, FLAGS, TOOL, FILE, AXES, RADIUS, ALONE, LONGEST =
 PLACE = 14  # in and out: the byte at which the line starts
 NUMBERS = 15
 SETS, STAYS = 1, 2  # of ALONE
-# Places in `reals`: position, offset, low and high limits are six each.
-POSITION, OFFSET, LOW, HIGH, UNIT, FEED, SAID, LEAST = 0, 6, 12, 18, 24, 25, 26, 27
-REALS = 28
+# Places in `reals`: position, offset, low and high limits and shift are six each.
+POSITION, OFFSET, LOW, HIGH, UNIT, FEED, SAID, LEAST, ZERO, SHIFT = 0, 6, 12, 18, 24, 25, 26, 27, 28, 29
+REALS = 35
 
 # By byte: 0-5 the axes, 6-8 I J K, 9 R, 10 F, 11 G, 12 N; 31 for all that ends a stretch.
 PLACES = bytes("xyzabcijkrfgn".find(chr(byte).lower()) & 31 if byte < 128 else 31 for byte in range(256))
@@ -62,6 +62,7 @@ def run(
     that may stand, by bits. RADIUS: whether R may. ALONE: what G0 and G1 do that stand alone: 0 nothing
     that is known here, SETS the mode, STAYS: a move to where it is.
     LONGEST: bytes of a line, 0 without a limit. FEED: mm/min; SAID: the F word, as written.
+    SHIFT, OFFSET: what is added to a place, in this order. ZERO: what absolute words are added to, 0 or -0.
     rows, marks: the same memory, as doubles and as integers: the packed rows; no more
     are written than there is room for. feeds, feed_places: the F words met, mm/min, each
     with its row and line; no more lines than there is room for. powers: scan.POWERS. places: PLACES.
@@ -96,6 +97,7 @@ def run(
     unit: cython.double = reals[UNIT]
     feed: cython.double = reals[FEED]
     said: cython.double = reals[SAID]
+    zero: cython.double = reals[ZERO]
     longest: cython.Py_ssize_t = numbers[LONGEST]
     first: cython.int
     second: cython.int
@@ -116,6 +118,7 @@ def run(
     goal: cython.double[6]
     here: cython.double[6]
     offset: cython.double[6]
+    shift: cython.double[6]
     low: cython.double[6]
     high: cython.double[6]
     place: cython.double
@@ -129,7 +132,8 @@ def run(
     way_v: cython.double
     kind: cython.longlong
     if not cython.compiled:
-        word, goal, here, offset, low, high = [0.0] * 18, [0.0] * 6, [0.0] * 6, [0.0] * 6, [0.0] * 6, [0.0] * 6
+        word, goal, here, low, high = [0.0] * 18, [0.0] * 6, [0.0] * 6, [0.0] * 6, [0.0] * 6
+        offset, shift = [0.0] * 6, [0.0] * 6
 
     first = 0
     second = 1
@@ -142,6 +146,7 @@ def run(
     for i in range(6):
         here[i] = reals[POSITION + i]
         offset[i] = reals[OFFSET + i]
+        shift[i] = reals[SHIFT + i]
         low[i] = reals[LOW + i]
         high[i] = reals[HIGH + i]
 
@@ -236,10 +241,10 @@ def run(
             for i in range(6 if seen & 0x38 else 3):
                 if seen & (1 << i):
                     place = word[i] * unit if i < 3 else word[i]
-                    goal[i] = place if absolute else here[i] + place
+                    goal[i] = place + (zero if absolute else here[i])
                     if goal[i] > far or goal[i] < -far:
                         fine = False
-                    place = goal[i] + offset[i]
+                    place = goal[i] + shift[i] + offset[i]
                     if place < low[i] or place > high[i]:
                         fine = False
                 else:
@@ -290,8 +295,8 @@ def run(
                         break
                     radius = radius if radius > other else other
                 radius = fabs(radius)
-                u += offset[first]
-                v += offset[second]
+                u = u + shift[first] + offset[first]
+                v = v + shift[second] + offset[second]
                 # The whole circle must be within the limits; else the general lane looks closer.
                 if u - radius < low[first] or u + radius > high[first]:
                     break
@@ -299,12 +304,12 @@ def run(
                     break
             for i in range(3):
                 here[i] = goal[i]
-                rows[base + i] = goal[i] + offset[i]
+                rows[base + i] = goal[i] + shift[i] + offset[i]
             if seen & 0x38:
                 for i in range(3, 6):
                     here[i] = goal[i]
             for i in range(3, 6):
-                rows[base + i] = here[i] + offset[i]
+                rows[base + i] = here[i] + shift[i] + offset[i]
             rows[base + 6] = u
             rows[base + 7] = v
             rows[base + 8] = number if code else 0.0

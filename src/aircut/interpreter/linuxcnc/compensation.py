@@ -30,7 +30,7 @@ AT_ONCE = frozenset(("MESSAGE", "LOG", "PRINT", "SELECT_TOOL", "SELECT_PLANE", "
 class Beside(Nist):
     """The stage; its moves carry the line of the block that released them, as the listing has them."""
 
-    written: list[float]  # end of the last move written, machine coordinates
+    written: list[float] | None = None  # end of the last move written, machine coordinates
 
     def write(self, m: house.State, move: Move, end: Point, center: Point | None, turns: int, onward: Onward) -> None:
         super().write(m, move._replace(line=m.out.line, file=m.out.file), end, center, turns, onward)
@@ -88,7 +88,7 @@ def off(m: State, w: Words) -> None:
         stage = m.stages.get(SLOT)
         path.flush(m)
         m.arc_refused = getattr(stage, "entered", False)
-        if isinstance(stage, Beside) and stage.entered:
+        if isinstance(stage, Beside) and stage.entered and stage.written is not None:
             m.told = m.to_program(stage.written)
         path.set_stage(m, SLOT, Leaving() if m.arc_refused else None)
     m.cutter = 0

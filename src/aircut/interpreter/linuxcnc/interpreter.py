@@ -143,7 +143,7 @@ class Interpreter(Run):
             if len(out.rows) >= FULL or out.used > out.stowed:
                 limit = self.settings.limits.moves
                 if limit is not None and out.moves > limit:
-                    self.warn(F.OUTPUT_LIMIT, limit=limit)
+                    self.tell_refusal(Refusal(F.OUTPUT_LIMIT, limit=limit))
                     raise Stopped
                 yield out.take()
 

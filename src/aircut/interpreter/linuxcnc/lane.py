@@ -35,7 +35,6 @@ class Lane(lane.Lane):
             and m.ini.plain
             and m.plane_code % 10 == 0
             and not any(m.numbered[number] for number in FAULTS)
-            and not any(a and b for a, b in zip(m.origin, m.shift, strict=True))  # their sum is exact
         )
 
     def letters(self, m: house.State) -> int:
@@ -45,13 +44,15 @@ class Lane(lane.Lane):
     def prepare(self, m: house.State, line: int, box: array[float]) -> None:
         """Tell the kernel where the state stands. box: lowest and highest places, six each."""
         assert isinstance(m, State)
-        m.offset = [a + b for a, b in zip(m.origin[:6], m.shift[:6], strict=True)]
+        m.offset = m.origin[:6]
         m.feed = m.gave_feed * m.unit
         super().prepare(m, line, box)
         self.numbers[plain.ALONE] = plain.STAYS
         self.numbers[plain.LONGEST] = LONGEST - len("\r\n")
         self.reals[plain.LEAST] = LEAST
         self.reals[plain.SAID] = m.gave_feed
+        self.reals[plain.ZERO] = 0.0
+        self.reals[plain.SHIFT : plain.REALS] = array("d", m.shift[:6])
 
     def settle(self, m: house.State, after: int) -> None:
         """Bring the state up to date; `after` is the line to go on with."""
