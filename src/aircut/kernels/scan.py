@@ -215,6 +215,7 @@ def survey(
     i: cython.Py_ssize_t
     end: cython.Py_ssize_t
     stop: cython.Py_ssize_t
+    last_of_part: cython.Py_ssize_t
     length: cython.Py_ssize_t = BLOCK
     part: cython.Py_ssize_t = PART
     total: cython.longlong = counts[first]
@@ -224,7 +225,13 @@ def survey(
     c: cython.uchar
     d: cython.uchar
     e: cython.uchar
+    sign: cython.uchar
     low: cython.uchar
+    mid: cython.uchar
+    high: cython.uchar
+    feed: cython.uchar
+    fine: cython.uchar
+    letter: cython.uchar
 
     for block in range(first, last):
         counts[block] = total
@@ -237,21 +244,26 @@ def survey(
             foreign = 1
         while at < stop:
             feeds = 0
-            for i in range(at, at + part if at + part < stop else stop):
+            last_of_part = at + part if at + part < stop else stop
+            for i in range(at, last_of_part):
+                # Bytes alone, no `and`, no `or`, and ^ in place of |: so compilers look at many in one step.
                 c = data[i]
-                d = data[i + 1]
-                e = data[i + 2]
+                d = (data[i + 1] - 48) & 255
+                e = (data[i + 2] - 48) & 255
+                sign = (c - 43) & 255
                 low = ((c | 32) - 97) & 255
-                feeds += c == 10
+                mid = (low - 8) & 255
+                high = (low - 23) & 255
+                feed = c == 10
+                feeds += feed
                 named |= low == 13
-                foreign |= not (
-                    (((c - 43) & 255) <= 14 and c != 44 and c != 47)
-                    or c == 10 or c == 32 or c == 13
-                    or (c >= 65 and (low <= 2 or low == 5 or low == 6 or ((low - 8) & 255) <= 2
-                        or low == 13 or low == 17 or ((low - 23) & 255) <= 2))
-                )  # fmt: skip
-                foreign |= c == 10 and d < 65
-                foreign |= low == 6 and (d < 48 or d > 57 or (d > 48 and e >= 48 and e <= 57))
+                fine = (sign <= 14) & (c != 44) & (c != 47)
+                fine ^= feed ^ (c == 32) ^ (c == 13)
+                letter = (low <= 2) ^ (low == 5) ^ (low == 6) ^ (mid <= 2) ^ (low == 13) ^ (low == 17) ^ (high <= 2)
+                fine |= letter & (c >= 65)
+                foreign |= fine ^ 1
+                foreign |= feed & ((d < 17) | (d > 207))  # no letter begins the line
+                foreign |= (low == 6) & ((d > 9) | ((d > 0) & (e <= 9)))
             total += feeds
             at += part
         for i in range(stop, end):
