@@ -10,6 +10,7 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.language.arithmetic import FUNCTIONS as HOUSE_FUNCTIONS
 from aircut.language.arithmetic import OPERATORS as HOUSE_OPERATORS
+from aircut.language.arithmetic import finite as house_finite
 
 
 def arc_cosine(value: float) -> float:
@@ -26,6 +27,13 @@ def arc_sine(value: float) -> float:
 
 def arc_tangent(y: float, x: float) -> float:
     return math.degrees(math.atan2(y, x))
+
+
+def finite(value: float) -> float:
+    """The value; raises Refusal where it is infinite or no number."""
+    if value != value:
+        raise Refusal(F.NO_VALUE)
+    return house_finite(value)
 
 
 def modulo(left: float, right: float) -> float:

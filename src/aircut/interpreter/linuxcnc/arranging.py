@@ -131,6 +131,8 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
     if motion is not None and takers:
         if axes or any(row.group & Group.NON_MODAL for row in takers):
             raise Refusal(F.AXIS_CONFLICT, "g", first=takers[0].name, second=motion.name)
+    if axes and motion is not None and motion.nameless and modal.weak:  # G5.3 takes no axes, and nothing else does
+        raise Refusal(F.NO_MOTION_MODE, axes[0])
     if axes and not takers and motion is None:
         if cancels:
             raise Refusal(F.G80_AXES, axes[0])

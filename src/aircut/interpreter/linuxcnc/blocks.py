@@ -20,7 +20,8 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter import compiling
 from aircut.interpreter.linuxcnc import arithmetic
-from aircut.language.arithmetic import Function, finite
+from aircut.interpreter.linuxcnc.arithmetic import finite
+from aircut.language.arithmetic import Function
 from aircut.language.expressions import (
     Application,
     Binary,
@@ -47,7 +48,7 @@ ENVIRONMENT = {
 
 
 BRACKETS = Function("brackets", finite, "an expression in brackets")
-ENVIRONMENT["f_brackets"] = finite
+ENVIRONMENT["finite"] = ENVIRONMENT["f_brackets"] = finite
 
 
 class ValueParser(Parser):

@@ -9,7 +9,7 @@ import re
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
-from aircut.interpreter.linuxcnc.state import DEBUGGING, LAST, State
+from aircut.interpreter.linuxcnc.state import DEBUGGING, LAST, POSITION, State
 
 ACTIVE = re.compile(r"[ \t]*(msg|debug|print|logopen|logappend|logclose|log|abort)(,|$)", re.IGNORECASE)
 PIECES = re.compile(r"#(\d+)|#<([^>]*)>|%(d)|%(f)|%\.(\d)f|%\.|(.)", re.DOTALL)
@@ -76,7 +76,9 @@ def value_of(m: State, number: str, name: str) -> float | None:
     """Value of a parameter in a text; None where there is none."""
     if number:
         index = int(number[:9])
-        return (m.read(float(index)) if index else 0.0) if index <= LAST else None
+        if index > LAST:
+            return None
+        return m.shown(index - POSITION) if POSITION <= index < POSITION + 9 else m.numbered[index]
     key = name.translate(BLANKS).lower()
     try:
         return m.read_name(key) if m.exists(key) else None

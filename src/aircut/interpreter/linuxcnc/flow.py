@@ -271,10 +271,9 @@ class Flow:
 
     def endsub(self, line: OLine, name: str, sought: bool = False) -> None:
         if sought:
-            if line.rest.startswith("["):
-                self.run.state.defining = True
-                self.give_back(line)
-                self.run.state.defining = False
+            self.run.state.defining = True
+            self.give_back(line)
+            self.run.state.defining = False
             return
         self.return_(line, name)
 

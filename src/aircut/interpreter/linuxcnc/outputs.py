@@ -9,10 +9,12 @@ from functools import partial
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
-from aircut.interpreter.linuxcnc.arranging import whole
 from aircut.interpreter.linuxcnc.motion import wrong
 from aircut.interpreter.linuxcnc.state import INPUT, State
 from aircut.interpreter.table import Code, Group, Order, Words
+
+MOST = 1e9
+NOTHING = -1.0  # what stands for an analog value that is not given
 
 
 def bar(m: State) -> None:
@@ -21,9 +23,10 @@ def bar(m: State) -> None:
 
 
 def index(w: Words, letter: str) -> int:
+    """The whole number next to a word. Raises Refusal."""
     if letter not in w:
         raise Refusal(F.MISSING_WORD, code="M62 to M68", word=letter.upper(), meaning="the number of the output")
-    number = whole(letter, w[letter])
+    number = round(w[letter]) if abs(w[letter]) < MOST else -1
     if number < 0:
         raise Refusal(F.BAD_VALUE, letter, word=letter.upper(), value=w[letter], wanted="an output, from 0")
     return number
@@ -38,7 +41,7 @@ def digital(event: str, m: State, w: Words) -> None:
 def analog(event: str, m: State, w: Words) -> None:
     """M67, M68: output E to Q."""
     bar(m)
-    m.out.event(event, index(w, "e"), w.get("q", 0.0))
+    m.out.event(event, index(w, "e"), w.get("q", NOTHING))
 
 
 def wait(m: State, w: Words) -> None:
