@@ -182,6 +182,8 @@ COMMANDS = {
             "kinematics in force (geometry.kinematics.Setup), mm; model 0: none",
             " ".join(Setup._fields),
         ),
+        own("AUXILIARY_AXES", "machine coordinates U, V and W at the end of the moves from here on, mm", "u v w"),
+        own("AUXILIARY_OFFSETS", "of the next SET_G5X_OFFSET or SET_G92_OFFSET, mm", "u v w"),
         own("TOOL_CHANGE_MACRO", "M107 1, M108 0", "running"),
     )
 }
@@ -216,6 +218,7 @@ SETS = {
         "flood": "FLOOD_ON FLOOD_OFF",
         "feed override": "ENABLE_FEED_OVERRIDE DISABLE_FEED_OVERRIDE",
         "speed override": "ENABLE_SPEED_OVERRIDE DISABLE_SPEED_OVERRIDE",
+        "auxiliary axes": "AUXILIARY_AXES",
         "interpolated axes": "INTERPOLATED_AXES",
         "traverse rate": "SET_TRAVERSE_RATE",
         "dynamics": "SET_DYNAMICS",

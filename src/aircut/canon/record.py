@@ -267,7 +267,8 @@ class Recording:
     def toolpath(self) -> Toolpath:
         """The moves as columns."""
         if self._toolpath is None:
-            self._toolpath = Toolpath.of_rows(self.chunks, setups=setups_of(self.events))
+            auxiliary = [(event.at, event.values) for event in self.events.named("AUXILIARY_AXES")]
+            self._toolpath = Toolpath.of_rows(self.chunks, setups=setups_of(self.events), auxiliary=auxiliary)
         return self._toolpath
 
     @property

@@ -144,12 +144,15 @@ class Toolpath:
         columns: dict[str, NDArray[Any]],
         start: Iterable[float] = (0.0,) * 6,
         setups: Sequence[tuple[int, Setup]] = (),
+        auxiliary: Sequence[tuple[int, tuple[float, ...]]] = (),
     ) -> None:
         """columns: one array a column of COLUMNS, all of one length. start: six positions, mm and degrees.
 
         setups: tool offsets and, under tool center point control, kinematics: from which move on.
+        auxiliary: U, V and W: from which move on.
         """
         self.start = tuple(start)
+        self.told_auxiliary = auxiliary
         self.setups = setups
         self.columns = columns
         self.__dict__.update(columns)
@@ -160,10 +163,11 @@ class Toolpath:
         chunks: list[bytes | memoryview],
         start: Iterable[float] = (0.0,) * 6,
         setups: Sequence[tuple[int, Setup]] = (),
+        auxiliary: Sequence[tuple[int, tuple[float, ...]]] = (),
     ) -> Toolpath:
         """From packed rows (ROW); the list is emptied on the way to spare memory."""
 
-        return cls(columns_of(joined(chunks)), start, setups)
+        return cls(columns_of(joined(chunks)), start, setups, auxiliary)
 
     def __len__(self) -> int:
         return len(self.kind)
@@ -193,6 +197,17 @@ class Toolpath:
     def tool_axes(self) -> NDArray[np.float64]:
         """The tool's axis at the ends of the moves as the part sees it, (n, 3): from the tip to the holder."""
         return tips.directions(self)
+
+    def auxiliary(self) -> NDArray[np.float64]:
+        """Machine coordinates U, V and W at the ends of the moves, (n, 3) mm; zeros where the machine has none.
+
+        They are no columns, as few machines have these axes: the run tells where they change.
+        """
+        import numpy as np
+
+        at = [index for index, _ in self.told_auxiliary]
+        places = np.array([(0.0, 0.0, 0.0), *(place for _, place in self.told_auxiliary)])
+        return places[np.searchsorted(np.array(at, np.int64), np.arange(len(self)), side="right")]
 
     def machine_axes(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Where the machine's axes stand at the starts and ends, the tool's offset included, (n, 6) mm and degrees."""

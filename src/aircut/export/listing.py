@@ -54,12 +54,17 @@ class Listing:
         self.work = [0.0] * 6
         self.shift = [0.0] * 6
         self.rotation = 0.0  # radians
+        self.auxiliary: list[float] | None = None  # U, V and W of a machine that has one of them
+        self.auxiliary_offsets = {"SET_G5X_OFFSET": [0.0] * 3, "SET_G92_OFFSET": [0.0] * 3}
+        self.next_offsets = [0.0] * 3
         self.labels: dict[tuple[int, int], str] = {}
         self.track: Mapping[str, Callable[[Event], None]] = {
             "USE_LENGTH_UNITS": self.set_units,
             "SET_G5X_OFFSET": self.set_work,
             "SET_G92_OFFSET": self.set_shift,
             "TOOL_CENTER_POINT": self.set_setup,
+            "AUXILIARY_AXES": self.set_auxiliary,
+            "AUXILIARY_OFFSETS": self.set_auxiliary_offsets,
             "SET_XY_ROTATION": self.set_rotation,
         }
 
@@ -74,6 +79,12 @@ class Listing:
 
     def set_setup(self, event: Event) -> None:
         self.setup = Setup(*event.values)
+
+    def set_auxiliary(self, event: Event) -> None:
+        self.auxiliary = list(event.values)
+
+    def set_auxiliary_offsets(self, event: Event) -> None:
+        self.next_offsets = list(event.values)
 
     def tip(self, row: tuple[float, ...]) -> tuple[float, ...]:
         """A row under tool center point control with the tip, as programmed, in place of the axes."""
@@ -102,6 +113,9 @@ class Listing:
 
     def moves(self, rows: memoryview, first: int, last: int) -> Iterator[str]:
         """The text of the rows from `first` to before `last`."""
+        if self.auxiliary is not None:
+            yield from filter(None, map(self.row, ROW.iter_unpack(rows[first * ROW.size : last * ROW.size])))
+            return
         reals = array("d", [w + s for w, s in zip(self.work, self.shift, strict=True)])
         turned = float(self.rotation != 0.0)
         reals.extend((self.unit, self.work[0], self.work[1], cos(self.rotation), sin(self.rotation), turned))
@@ -159,7 +173,11 @@ class Listing:
         if row.bare:
             yield row.form % values + "\n"
             return
-        text = f"{WRITTEN.get(event.name, event.name)}({row.form % values})"
+        form = row.form % values
+        if self.auxiliary is not None and event.name in self.auxiliary_offsets:
+            self.auxiliary_offsets[event.name] = self.next_offsets
+            form += ", %.4f, %.4f, %.4f" % tuple(value / self.unit for value in self.next_offsets)
+        text = f"{WRITTEN.get(event.name, event.name)}({form})"
         yield self.line(event.file, event.line, text)
 
     def move(self, row: tuple[float, ...]) -> str:
@@ -175,4 +193,8 @@ class Listing:
             text = ARC % (place[u], place[v], *center, row[11], place[w], *place[3:])
         else:
             text = STRAIGHT[Kind(kind)] + SIX % tuple(place)
+        if self.auxiliary is not None:
+            offsets = zip(*self.auxiliary_offsets.values(), strict=True)
+            more = [(place - sum(offset)) / unit for place, offset in zip(self.auxiliary, offsets, strict=True)]
+            text = text[:-1] + ", %.4f, %.4f, %.4f)" % tuple(more)
         return self.line(int(row[12]), int(row[9]), text)

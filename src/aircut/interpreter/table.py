@@ -192,6 +192,7 @@ class Dialect(NamedTuple):
     settings: Mapping[int, Code]  # G10's L numbers
     no_variable: str  # hint for numbers outside all ranges
     cutter: CutterRules = CutterRules()
+    letters: str = "xyzabc"  # of the axes that a machine may have
     axes: str = "XYZ"  # of the machine that serves when none is given
     takes_ini: bool = False  # LinuxCNC's configuration moves its interpreter
     table_unit: float = 1.0  # mm in a unit of LinuxCNC's tool table, which does not name its own

@@ -240,14 +240,14 @@ class Machine:
         return EMPTY if id == 0 else self.tools.get(id)
 
 
-def built_in(axes: str = "XYZ") -> Machine:
+def built_in(axes: str = "XYZ", known: str = AXES) -> Machine:
     """The machine that serves when none is given: ±10,000 mm, tools 1 to 5 without length or diameter.
 
-    axes: letters of the axes it has; A, B and C are rotary tables. Raises MachineError.
+    axes: letters of the axes it has; A, B and C are rotary tables. known: those it may have. Raises MachineError.
     """
     letters = axes.lower()
-    if not letters or set(letters) - set(AXES) or len(set(letters)) < len(letters):
-        raise MachineError(f"axes {axes!r}: give some of {AXES.upper()}, each once")
+    if not letters or set(letters) - set(known) or len(set(letters)) < len(letters):
+        raise MachineError(f"axes {axes!r}: give some of {known.upper()}, each once")
     file = File("built-in", axes={a: axis_of(a, {}) for a in letters})
     return Machine(file, {i: Tool(i, slot=i) for i in range(1, 6)}, own_tools=False)
 

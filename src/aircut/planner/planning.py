@@ -86,6 +86,9 @@ def check(toolpath: Toolpath, limits: Limits) -> None:
     """Refuse what cannot be planned. Raises PlanError."""
     import numpy as np
 
+    if any(place != toolpath.told_auxiliary[0][1] for _, place in toolpath.told_auxiliary):
+        line = toolpath.line[min(toolpath.told_auxiliary[1][0], len(toolpath) - 1)]
+        raise PlanError(f"line {line}: moves of U, V and W cannot be planned in this version")
     for i, axis in enumerate(AXES):
         column = toolpath.columns[axis]
         if not len(column):

@@ -21,7 +21,7 @@ from aircut.interpreter.linuxcnc.comments import say
 from aircut.interpreter.linuxcnc.files import Line, Text
 from aircut.interpreter.linuxcnc.flow import Flow, Search
 from aircut.interpreter.linuxcnc.lane import Lane
-from aircut.interpreter.linuxcnc.state import FAULTS, State
+from aircut.interpreter.linuxcnc.state import FAULTS, NINE, State
 from aircut.interpreter.linuxcnc.text import LONGEST, check, too_long
 from aircut.interpreter.requests import Request
 from aircut.interpreter.running import Log, Run, Settings, Stopped
@@ -32,7 +32,6 @@ from aircut.machine import Machine
 from aircut.source import Source
 
 NO_MODE = "g-0.1"  # the motion mode after a spline of points: it reads as -1
-AUXILIARY = "uvw"
 STRETCH = 4  # lines without others among them that the fast lane is worth while for
 FULL = CHUNK * ROW.size
 FATAL = (F.BLOCK_BUDGET, F.ABORTED)
@@ -262,12 +261,11 @@ class Interpreter(Run):
             self.perform(steps, words)
 
     def check_axes(self, block: Block) -> None:
-        """Raises Refusal where a word names U, V or W, and the machine has no such axis: it is no letter then."""
+        """Raises Refusal where a word names an axis that the machine does not have: it is no letter then."""
         for letter in block.letters:
-            if letter in AUXILIARY and letter not in self.machine.auxiliary:
-                raise Refusal(
-                    F.ILLEGAL_CHARACTER, letter, character=letter.upper(), hint="the machine has no such axis"
-                )
+            if letter in NINE and letter not in self.state.axes:
+                hint = "the machine has no such axis"
+                raise Refusal(F.ILLEGAL_CHARACTER, letter, character=letter.upper(), hint=hint)
 
     def compile(self, line: Line) -> Block:
         """The compiled block of a line; lines that differ in literal numbers alone share it. Raises Refusal."""

@@ -33,6 +33,7 @@ class Lane(lane.Lane):
             and not m.diameter
             and m.rotation == 0.0
             and m.ini.plain
+            and not (m.auxiliary and m.to_space(m.position)[6:] != m.led)
             and m.plane_code % 10 == 0
             and not any(m.numbered[number] for number in FAULTS)
         )

@@ -21,7 +21,7 @@ from aircut.interpreter.linuxcnc import (
 )
 from aircut.interpreter.linuxcnc.interpreter import Interpreter
 from aircut.interpreter.linuxcnc.named import NAMED
-from aircut.interpreter.linuxcnc.state import LAST
+from aircut.interpreter.linuxcnc.state import LAST, NINE
 from aircut.interpreter.table import Code, CutterRules, Dialect
 from aircut.machine.tools import Tool
 
@@ -69,6 +69,7 @@ LINUXCNC = Dialect(
     local_underscore=False,
     settings=offsets.SETTINGS,
     no_variable="parameters are #1 to #5601",
+    letters=NINE,
     axes="XYZABC",
     takes_ini=True,
     table_unit=THEIR_INCH,

@@ -30,6 +30,7 @@ from aircut.interpreter.requests import Probe as ProbeRequest
 from aircut.interpreter.requests import Probed, Request
 from aircut.interpreter.state import INCH, PLANES
 from aircut.interpreter.table import Code, Group, Order, Words
+from aircut.interpreter.travel import SLACK
 
 TRAVERSE, FEED, PROBE = int(Kind.TRAVERSE), int(Kind.FEED), int(Kind.PROBE)
 CENTER_WORDS = "ijk"
@@ -100,9 +101,27 @@ def polar(m: State, w: Words, place: list[float]) -> None:
 def go(m: State, kind: int, place: list[float], speed: float = 0.0, flags: int | None = None) -> None:
     """Move straight to a point of the program's frame."""
     space = m.to_space(place)
+    if m.auxiliary:
+        lead(m, space)
     m.way.line(m, kind, space[:6], speed, m.flags if flags is None else flags)
     m.position = place
     m.told = place[:]
+
+
+def lead(m: State, space: list[float]) -> None:
+    """Tell where the next move leads U, V and W. Raises Refusal where that is beyond their travel."""
+    if space[6:] == m.led:
+        return
+    for i, letter, axis in m.auxiliary:
+        value = space[i] + m.tool_offset[i]
+        if axis is not None and not axis.min - SLACK <= value <= axis.max + SLACK:
+            limit, name = (axis.min, "min") if value < axis.min else (axis.max, "max")
+            beyond = abs(value - limit) / m.unit
+            unit = "in" if m.unit == INCH else "mm"
+            m.warn(F.TRAVEL, letter, axis=letter.upper(), value=value / m.unit, beyond=beyond,
+                   limit=limit / m.unit, name=name, unit=unit)  # fmt: skip
+    m.led = space[6:]
+    m.out.event("AUXILIARY_AXES", *m.led)
 
 
 def length_of(m: State, place: list[float]) -> float:
@@ -210,6 +229,8 @@ def arc(turn: int, m: State, w: Words) -> None:
     length = hypot(around, end[across] - m.position[across]) / m.unit
     speed = speed_of(m, w, "G2", length)
     space = m.to_space(end)
+    if m.auxiliary:
+        lead(m, space)
     m.way.arc(m, space[:6], center_in_space(m, u, v, center), turn * turns, speed, feed_flags(m))
     m.position = end
     m.told = end[:]

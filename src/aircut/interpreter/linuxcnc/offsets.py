@@ -22,6 +22,8 @@ SYSTEMS = 9
 
 
 def tell_system(m: State) -> None:
+    if m.auxiliary:
+        m.out.event("AUXILIARY_OFFSETS", *m.origin[6:])
     m.out.event("SET_G5X_OFFSET", m.system + 1, *m.origin[:6])
 
 
@@ -30,6 +32,8 @@ def tell_rotation(m: State) -> None:
 
 
 def tell_shift(m: State) -> None:
+    if m.auxiliary:
+        m.out.event("AUXILIARY_OFFSETS", *m.shift[6:])
     m.out.event("SET_G92_OFFSET", *m.shift[:6])
 
 

@@ -32,8 +32,12 @@ def begin(m: State) -> None:
         m.set_shift(m.stored(G92 + 1))
     if m.ini.forgets_shift:
         m.rotation = 0.0  # LinuxCNC forgets it too, until a system is chosen
-    # LinuxCNC starts at machine zero, but disregards the rotation in this, and U, V and W.
-    m.position = [*(0.0 - o - s for o, s in zip(m.origin[:6], m.shift, strict=False)), 0.0, 0.0, 0.0]
+    # LinuxCNC starts at machine zero, but disregards the rotation in this, and the axes that it does not have.
+    m.position = [0.0 - o - s for o, s in zip(m.origin, m.shift, strict=True)]
+    if m.auxiliary:
+        m.out.event("AUXILIARY_AXES", *m.led)
+    else:
+        m.position[6:] = [0.0] * 3
     m.told = m.position[:]
     m.out.event("USE_LENGTH_UNITS", "MM")
     tell_system(m)

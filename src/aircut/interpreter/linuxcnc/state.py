@@ -51,6 +51,11 @@ class State(house.State):
         self.ini = machine.ini or NO_INI
         self.position = [0.0] * 9
         self.numbered = [0.0] * (LAST + 1)
+        #: U, V and W, if the machine has one of them, and where the next move leaves them (machine coordinates, mm).
+        own = {letter: axis for letter, axis in machine.auxiliary.items() if axis.type != "disabled"}
+        self.auxiliary = [(i, NINE[i], own.get(NINE[i])) for i in (6, 7, 8)] if own else []
+        self.axes += "".join(own)
+        self.led = [0.0] * 3
         self.numbered_of(machine)
         self.numbered[DEBUGGING] = 1.0
         self.origin = [0.0] * 9
