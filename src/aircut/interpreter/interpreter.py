@@ -24,6 +24,7 @@ from aircut.interpreter.state import State
 from aircut.interpreter.table import Code, Dialect, Group, Words
 from aircut.interpreter.tooling import TOOL_CHANGE
 from aircut.interpreter.unit import Branch, Shape, Statement, Unit
+from aircut.interpreter.weaving import weave
 from aircut.kernels import scan
 from aircut.language.arithmetic import EQUAL, is_null
 from aircut.language.blocks import Block, parse
@@ -230,7 +231,7 @@ class Interpreter(Run):
         while True:
             unit, end = self.unit, self.bound()
             classes, seen, cache = unit.source.classes, unit.seen, unit.plain
-            slow = unit.slow
+            slow, looms = unit.slow, unit.looms
             here = True
             while here:
                 if line >= end:
@@ -279,6 +280,8 @@ class Interpreter(Run):
                         w = dict(zip(shape.letters, values))  # noqa: B905  one value a letter by construction
                         self.carry_out(steps.codes, w)
                         line += 1
+                    elif line in looms:
+                        line = self.repeat(unit, line)
                     else:
                         line = self.step(unit, line)
                     if self.talk is not None:
@@ -299,6 +302,19 @@ class Interpreter(Run):
                         yield out.take()
                     else:
                         self.midway.drop(m)
+
+    def repeat(self, unit: Unit, line: int) -> int:
+        """Run a loop that has been compiled whole; returns the line to go on with. Raises Refusal."""
+        loom = unit.looms[line]
+        if loom is None or self.midway is not None or self.mark:
+            return self.step(unit, line)
+        line, whole = loom(self)
+        if whole:
+            return line
+        unit.seen[line] = 1
+        self.line = line
+        self.state.line = self.state.out.line = line + 1
+        return self.step(unit, line)
 
     def glide(self, line: int) -> int:
         """Run a stretch of plain motion in the fast lane; returns the line to go on with, `line` if there is none."""
@@ -569,6 +585,8 @@ class Interpreter(Run):
         """Jump back: count it, and see whether the loop can ever end. Raises Refusal."""
         self.count(line - target + 1, target, line)
         self.passes += 1
+        if target not in unit.looms and target in unit.structure.loops:
+            unit.looms[target] = weave(unit, target)
         if self.passes & (self.passes - 1) == 0:
             self.watched = (line, self.passes, self.state.snapshot())
         elif self.watched and self.watched[0] == line and self.passes - self.watched[1] <= WATCH:

@@ -75,6 +75,7 @@ class Unit:
         self.encoding: list[tuple[int, Refusal]] = []  # warnings
         self.seen = bytearray(len(source))
         self.slow = bytearray(len(source))  # plain lines at which the fast lane has got nowhere
+        self.looms: dict[int, Any] = {}  # loops compiled whole, by the line of their WHILE; None: they cannot be
         self.percent = False
         self.plain: dict[int, tuple[Shape, Any]] = {}  # plain lines that run again
         self.batch = Batch(min(BATCH, max(len(source), 1)))
