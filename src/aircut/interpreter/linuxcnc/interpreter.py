@@ -319,7 +319,7 @@ class Interpreter(Run):
             elif row.modal:
                 self.modal = row
                 m.motion_name = row.name.lower()
-            if row.group is Group.MOTION and not row.cycle:
+            if row.group is Group.MOTION and not row.cycle and (row.modal or row.nameless):
                 m.cycle = None
             if row.group is Group.STOP:
                 path.flush(m)

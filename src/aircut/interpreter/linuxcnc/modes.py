@@ -99,6 +99,8 @@ def orient(m: State, w: Words) -> None:
     if "r" in w or "p" in w:
         m.out.event("ORIENT_SPINDLE", 0, w.get("r", 0.0) + m.ini.orient, int(w.get("p", 0.0)))
     if "q" in w:
+        if w["q"] <= 0.0:
+            raise Refusal(F.BAD_VALUE, "q", word="Q", value=w["q"], wanted="seconds above zero")
         m.out.event("WAIT_ORIENT_COMPLETE", 0, w["q"])
 
 
@@ -108,8 +110,6 @@ def check_orient(m: State, w: Words) -> None:
         raise Refusal(F.BAD_VALUE, "r", word="R", value=w["r"], wanted="0 to 360 degrees")
     if "p" in w and w["p"] not in (0.0, 1.0, 2.0):
         raise Refusal(F.BAD_VALUE, "p", word="P", value=w["p"], wanted="0, 1 or 2")
-    if "q" in w and w["q"] <= 0.0:
-        raise Refusal(F.BAD_VALUE, "q", word="Q", value=w["q"], wanted="seconds above zero")
 
 
 # --- planes, units, distances

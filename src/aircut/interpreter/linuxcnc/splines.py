@@ -42,6 +42,8 @@ def trace(m: State, count: int, points: Sequence[Point], end: list[float]) -> No
         go(m, FEED, [x, y, *m.position[2:]], m.gave_feed * m.unit, m.flags | TOLD)
     m.position = end
     m.told = told
+    if m.cycle is not None:  # a cycle in force goes on afterwards, from the height of then
+        m.cycle = m.cycle._replace(level=m.position[2] / m.unit)
 
 
 def cubic(m: State, w: Words) -> None:

@@ -70,7 +70,7 @@ class State(house.State):
         self.show_tool()
         self.slot = min(1, len(self.slots) - 1)  # of the tool in the spindle, before any change
         self.changed: Tool | None = None  # by M6 or M61 of this block
-        self.selected_slot = -1
+        self.selected_slot = 0
         self.gave_feed = 0.0  # the F word in force
         self.words: dict[str, float] = {}  # of the block
         self.codes: tuple[Code, ...] = ()  # of the block

@@ -28,7 +28,7 @@ def change(m: State, w: Words) -> None:
     """M6: load the selected tool; of tool 0, what was in the spindle stays there. Raises Refusal."""
     if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="a tool change")
-    slot = max(m.selected_slot, 0)
+    slot = m.selected_slot
     m.out.event("START_CHANGE")
     if not m.ini.spindle_on:
         m.out.event("STOP_SPINDLE_TURNING", 0)
