@@ -85,17 +85,19 @@ def machine(case: Case, folder: Path) -> Machine:
         (folder / name).write_text(text, "utf-8")
     if "machine.toml" in case.files:
         made = load(folder)
-    elif "axes" not in case.head and case.dialect != "rosetta":
-        made = dialects.machine(dialects.load(case.dialect))
+    elif case.dialect != "rosetta":
+        made = dialects.machine(dialects.load(case.dialect), case.head.get("axes", ""))
     else:
         made = built_in(case.head.get("axes", "XYZ"))
     if "error-on-missing-feed" in case.head.get("options", ""):
         made.options = msgspec.structs.replace(made.options, missing_feed="error")
     if entry := re.search(r"entry=(\w+)", case.head.get("options", "")):
         made.options = msgspec.structs.replace(made.options, entry=entry[1])
-    for pair in case.head.get("parameters", "").split():
-        number, value = pair.split("=")
-        made.variables[int(number)] = float(value)
+    given = {int(n): float(v) for n, v in (pair.split("=") for pair in case.head.get("parameters", "").split())}
+    if case.dialect == "rosetta":
+        made.variables |= given
+    else:
+        made.parameters = given
     if "tools" in case.head:
         made.own_tools = True
         made.tools = {}

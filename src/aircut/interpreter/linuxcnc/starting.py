@@ -49,7 +49,8 @@ def begin(m: State) -> None:
 def remembered(m: State) -> dict[int, float]:
     """What outlives the run: for a parameter file as programs see it, for a machine's folder in mm."""
     machine = m.machine
-    kept = {number: m.numbered[number] for number in sorted({*(machine.parameters or ()), *PERSISTENT})}
+    given = machine.variables if machine.parameters is None else machine.parameters
+    kept = {number: m.numbered[number] for number in sorted({*given, *PERSISTENT})}
     kept |= {n: m.shown(n - POSITION) for n in kept if POSITION <= n < POSITION + 9}
     if machine.parameters is None:
         kept = {n: v * INCH if n in KEPT_LENGTHS else v for n, v in kept.items() if n in memory.PERSISTENT}
