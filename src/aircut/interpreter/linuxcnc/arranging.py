@@ -51,6 +51,7 @@ class Steps(NamedTuple):
 
     codes: tuple[Code, ...]
     motion: Code | None  # the one that the axis words mean
+    checked: bool = True  # there is something for check_values
 
 
 def g_name(value: float) -> str:
@@ -161,4 +162,5 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
         if letter not in AXIS_WORDS and letter not in ITEMS and letter not in takes:
             raise Refusal(F.UNUSED_WORD, letter, word=letter.upper())
     order = sorted([*rows, *items], key=lambda row: row.order)
-    return Steps(tuple(order), motion)
+    checked = polar or any(row.fits or row.check or row.counts for row in order)
+    return Steps(tuple(order), motion, checked)

@@ -6,6 +6,7 @@ Source: the canonical listing, section 9.
 from __future__ import annotations
 
 import re
+from array import array
 from collections.abc import Iterable, Sequence
 from pathlib import Path, PurePosixPath
 
@@ -13,6 +14,7 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.linuxcnc import calls
 from aircut.interpreter.linuxcnc.blocks import Block, OLine, check_number, parse_o
+from aircut.interpreter.linuxcnc.shapes import Words
 from aircut.interpreter.linuxcnc.text import clean
 from aircut.source import Source
 
@@ -38,7 +40,20 @@ class Text:
         self.source = source
         self.lines: dict[int, Line] = {}
         self.slow = bytearray(len(source))  # lines at which the fast lane has got nowhere
-        self.ran = bytearray(len(source))  # lines that the fast lane ran
+        self.ran = bytearray(len(source))  # plain lines that were run
+        self.words: Words | None = None
+        self.plain: dict[int, tuple[bytes, array[float]]] = {}  # words of lines that were run again
+
+    def words_of(self, at: int, keep: bool) -> tuple[bytes, array[float]] | None:
+        """Shape and values of a plain line; None of others. keep: it is likely to be run again."""
+        known = self.plain.get(at)
+        if known is None:
+            if self.words is None:
+                self.words = Words(self.source)
+            known = self.words.of(at)
+            if keep and known is not None:
+                self.plain[at] = known
+        return known
 
     def line(self, at: int) -> Line:
         """A clean line. Raises Refusal."""

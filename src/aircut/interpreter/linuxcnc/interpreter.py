@@ -21,6 +21,7 @@ from aircut.interpreter.linuxcnc.comments import say
 from aircut.interpreter.linuxcnc.files import Line, Text
 from aircut.interpreter.linuxcnc.flow import Flow, Search
 from aircut.interpreter.linuxcnc.lane import Lane
+from aircut.interpreter.linuxcnc.shapes import Shape, shape_of
 from aircut.interpreter.linuxcnc.state import FAULTS, NINE, State
 from aircut.interpreter.linuxcnc.text import LONGEST, check, too_long
 from aircut.interpreter.requests import Request
@@ -56,6 +57,7 @@ class Interpreter(Run):
         self.next_line = 0
         self.shared: dict[str, Block] = {}
         self.steps: dict[Any, Steps] = {}
+        self.shapes: dict[bytes, Shape | None] = {}
         self.argument_cache: dict[OLine, Any] = {}
         self.percent = False
         #: A code that asks the world: its conversation, the codes still to run, and the block's words.
@@ -182,6 +184,8 @@ class Interpreter(Run):
         """Run a line. Raises Refusal."""
         text = self.unit
         source = text.source
+        if source.classes[self.line] == scan.PLAIN and self.flow.search is None and self.plain(text):
+            return
         if source.classes[self.line] == 0 and not source.raw(self.line).strip():
             return
         if self.settings.block_delete and source.raw(self.line).lstrip().startswith(b"/"):
@@ -201,6 +205,38 @@ class Interpreter(Run):
         if line.code == "%":
             raise Refusal(F.MISPLACED_PERCENT, where=(0, 1))
         self.block(line)
+
+    def plain(self, text: Text) -> bool:
+        """Run a plain line; False where it must be read character by character. Raises Refusal."""
+        known = text.words_of(self.line, self.repeated > 0 or bool(self.flow.stack))
+        if known is None:
+            return False
+        bare, values = known
+        if bare not in self.shapes:
+            self.shapes[bare] = shape_of(bare, self.machine.auxiliary)
+        shape = self.shapes[bare]
+        words = None if shape is None else shape.words(values)
+        if shape is None or words is None:
+            return False
+        text.ran[self.line] = 1
+        self.begin_block()
+        if shape.codes or words:
+            steps = shape.steps.get(self.modal.name)
+            if steps is None:
+                steps = shape.steps[self.modal.name] = arrange(shape.codes, words, self.modal, self.dialect)
+            if steps.checked:
+                check_values(self.state, steps.codes, words)
+            self.perform(steps, words)
+        return True
+
+    def begin_block(self) -> None:
+        """What every block begins with."""
+        m = self.state
+        if m.stale:
+            m.stale = False
+            m.position = m.told[:]
+        for number in FAULTS:
+            m.numbered[number] = 0.0
 
     def fanuc(self, line: Line, start: re.Match[str]) -> None:
         """M98, and M99 in a subroutine. M98 is read even where lines are passed over. Raises Refusal."""
@@ -230,11 +266,7 @@ class Interpreter(Run):
     def block(self, line: Line) -> None:
         """Run a block of words. Raises Refusal."""
         m = self.state
-        if m.stale:
-            m.stale = False
-            m.position = m.told[:]
-        for number in FAULTS:
-            m.numbered[number] = 0.0
+        self.begin_block()
         block = line.block
         if block is None:
             block = self.compile(line)
@@ -246,7 +278,8 @@ class Interpreter(Run):
             steps = self.steps.get(key)
             if steps is None:
                 steps = self.steps[key] = arrange(names, words, self.modal, self.dialect)
-            check_values(m, steps.codes, words)
+            if steps.checked:
+                check_values(m, steps.codes, words)
         else:
             steps, words = None, {}
         if block.targets:

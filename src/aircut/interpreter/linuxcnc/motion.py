@@ -34,6 +34,8 @@ from aircut.interpreter.travel import SLACK
 
 TRAVERSE, FEED, PROBE = int(Kind.TRAVERSE), int(Kind.FEED), int(Kind.PROBE)
 CENTER_WORDS = "ijk"
+INDEX = {letter: i for i, letter in NUMBERED_NINE}
+TURNING = (3, 4, 5)  # A B C
 SMALLEST = 0.00127  # mm: a radius below, or a half chord beyond R by more, is refused
 SPREAD_SHARE = 0.001  # part of the larger radius by which an arc's radii may differ, beyond the INI's tolerance
 SPREAD_MOST = 100  # but never this many times
@@ -51,12 +53,18 @@ def goal(m: State, w: Words, rapid: bool = False) -> list[float]:
     """Where the axis words lead, in the program's frame. Raises Refusal."""
     if m.ini.indexers and not rapid:
         bar_indexers(m, w)
-    place = m.position[:]
     if m.machine_frame:
         return machine_goal(m, w)
-    for i, letter in NUMBERED_NINE:
-        if letter in w:
-            place[i] = m.axis(w, i) + (0.0 if m.absolute else place[i])
+    place = m.position[:]
+    absolute, unit = m.absolute, m.unit
+    for letter, value in w.items():
+        i = INDEX.get(letter, -1)
+        if i >= 0:
+            if i not in TURNING:
+                value *= unit
+                if i == 0 and m.diameter:
+                    value /= 2.0
+            place[i] = value + (0.0 if absolute else place[i])
     if m.ini.wrapped and m.absolute:
         wrap(m, w, place)
     if "@" in w or "^" in w:
@@ -182,7 +190,9 @@ def straight(kind: int, m: State, w: Words) -> None:
     if kind == FEED:
         check_feed(m, w)
     place = goal(m, w, kind == TRAVERSE)
-    speed = speed_of(m, w, "G1", length_of(m, place)) if kind == FEED else 0.0
+    speed = 0.0
+    if kind == FEED:
+        speed = speed_of(m, w, "G1", length_of(m, place) if m.feed_mode == 93 else 0.0)
     if kind == TRAVERSE and m.ini.indexers and indexed(m, w):
         flags = begin_exact(m)
         go(m, kind, place)

@@ -115,9 +115,16 @@ class State(house.State):
 
     def to_space(self, place: list[float]) -> list[float]:
         """From the program's frame to machine coordinates, without the tool's offset."""
-        moved = [p + s for p, s in zip(place, self.shift, strict=True)]
-        moved[0], moved[1] = self.turned(moved[0], moved[1], self.rotation)
-        return [p + o for p, o in zip(moved, self.origin, strict=True)]
+        x, y, z, a, b, c, u, v, w = place  # written out, as every move comes by
+        sx, sy, sz, sa, sb, sc, su, sv, sw = self.shift
+        ox, oy, oz, oa, ob, oc, ou, ov, ow = self.origin
+        x += sx
+        y += sy
+        if self.rotation != 0.0:
+            x, y = self.turned(x, y, self.rotation)
+        return [
+            x + ox, y + oy, z + sz + oz, a + sa + oa, b + sb + ob, c + sc + oc, u + su + ou, v + sv + ov, w + sw + ow
+        ]  # fmt: skip
 
     def to_program(self, place: list[float]) -> list[float]:
         """The inverse of `to_space`; of six axes, U, V and W stay."""
