@@ -213,7 +213,7 @@ class Interpreter(Run):
             return False
         bare, values = known
         if bare not in self.shapes:
-            self.shapes[bare] = shape_of(bare, self.machine.auxiliary)
+            self.shapes[bare] = shape_of(bare, self.state.axes)
         shape = self.shapes[bare]
         words = None if shape is None else shape.words(values)
         if shape is None or words is None:

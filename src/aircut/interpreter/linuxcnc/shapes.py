@@ -11,13 +11,13 @@ from array import array
 from collections.abc import Collection
 
 from aircut.interpreter.linuxcnc.arranging import FREE, LOWEST, MOST_M, WHOLE, Steps
+from aircut.interpreter.linuxcnc.state import NINE
 from aircut.interpreter.linuxcnc.text import LONGEST
 from aircut.kernels.scan import PLAIN
 from aircut.source import BATCH, Batch, Source
 
 WORD = re.compile(rb"([a-z])([\d.]*)")
 ELSEWHERE = frozenset(("m2", "m30", "m98", "m99"))  # codes that end a program or lead away
-AUXILIARY = frozenset("uvw")
 FIRST_BATCH = 16  # lines scanned where the program has jumped
 MOST = 1e9  # whole numbers beyond are left to others
 
@@ -52,8 +52,8 @@ class Shape:
         return words
 
 
-def shape_of(words: bytes, auxiliary: Collection[str]) -> Shape | None:
-    """The shape that these words have, see kernels.scan. auxiliary: which of U, V, W the machine has."""
+def shape_of(words: bytes, axes: Collection[str]) -> Shape | None:
+    """The shape that these words have, see kernels.scan. axes: letters of those that the machine has."""
     codes: list[str] = []
     letters: list[str] = []
     for match in WORD.finditer(words):
@@ -65,7 +65,7 @@ def shape_of(words: bytes, auxiliary: Collection[str]) -> Shape | None:
     of_m = [name for name in codes if name[0] == "m"]
     if len(of_m) > MOST_M or any("." in name or name in ELSEWHERE for name in of_m):
         return None
-    if any(letter in AUXILIARY and letter not in auxiliary for letter in letters):
+    if any(letter in NINE and letter not in axes for letter in letters):
         return None
     return Shape(tuple(codes), tuple(letters))
 
