@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from aircut.source import Source
 
 INCH = 25.4  # mm
+WIDTH = ROW.size // 8
 BUFFER = 1 << 20  # bytes of text that are made at a time
 NO_NUMBER = "N..... "
 LABEL = re.compile(rb"^[ \t/]*[nN](\d*)")
@@ -121,7 +122,7 @@ class Listing:
         reals.extend((self.unit, self.work[0], self.work[1], cos(self.rotation), sin(self.rotation), turned))
         doubles, marks = rows.cast("d"), rows.cast("q")
         while first < last:
-            file = ROW.unpack_from(rows, first * ROW.size)[12]
+            file = marks[first * WIDTH + 10] >> 16 & 0xFFFF
             source = self.text(file)
             numbers = array("q", (first, 0, self.count, file, last))
             data = source.data if source.numbered else b""

@@ -147,10 +147,16 @@ def moves(
             number //= 10
         number = count
         place = end
-        while number:
+        while number >= 10:
+            rest = number // 100
+            number -= rest * 100
+            place -= 2
+            out[place] = pairs[2 * number]
+            out[place + 1] = pairs[2 * number + 1]
+            number = rest
+        if number:
             place -= 1
-            out[place] = 48 + number % 10
-            number //= 10
+            out[place] = 48 + number
         while place > at:
             place -= 1
             out[place] = 32
@@ -263,28 +269,36 @@ def moves(
                 out[at] = 45
                 at += 1
                 value = -value
-            if not value < limit:  # not a number neither
+            if value == 0.0:
+                whole = 0
+                four = 0
+            elif not value < limit:  # not a number neither
                 fine = False
                 break
-            whole = int(value)
-            fraction = (value - whole) * parts
-            scaled = int(fraction)
-            fraction -= scaled
-            scaled *= 625
-            four = scaled >> 49
-            rest = scaled & mask
-            # Below 0.5 a number may have bits beyond the 53 looked at: 625 times these are less than 625.
-            if fraction > 0.0 and rest <= half and rest >= half - 625:
-                fine = False
-                break
-            if rest > half or (rest == half and four & 1):
-                four += 1
-                if four == 10000:
-                    four = 0
-                    whole += 1
+            else:
+                whole = int(value)
+                fraction = (value - whole) * parts
+                scaled = int(fraction)
+                fraction -= scaled
+                scaled *= 625
+                four = scaled >> 49
+                rest = scaled & mask
+                # Below 0.5 a number may have bits beyond the 53 looked at: 625 times these are less than 625.
+                if fraction > 0.0 and rest <= half and rest >= half - 625:
+                    fine = False
+                    break
+                if rest > half or (rest == half and four & 1):
+                    four += 1
+                    if four == 10000:
+                        four = 0
+                        whole += 1
             if whole < 10:
                 out[at] = 48 + whole
                 at += 1
+            elif whole < 100:
+                out[at] = pairs[2 * whole]
+                out[at + 1] = pairs[2 * whole + 1]
+                at += 2
             else:
                 number = whole
                 end = at
