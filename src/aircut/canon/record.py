@@ -101,6 +101,7 @@ class Recorder:
         "line",
         "marks",
         "place",
+        "returned",
         "room",
         "rows",
         "stowed",
@@ -114,6 +115,7 @@ class Recorder:
         self.arena: memoryview | None = None  # where kernels write; it becomes chunks without being copied
         self.used = 0  # bytes of the arena
         self.stowed = 0  # of these, handed out
+        self.returned = 0  # of these, given back
         self.room = 0  # rows of a new arena; 0: a chunk's
         self.contour = bytearray()
         self.events = Events()
@@ -176,8 +178,9 @@ class Recorder:
         """Memory for this many rows, behind those written so far; `fill` tells how many of them are."""
         size = (rows * ROW.size) + len(self.rows)
         if self.arena is None or self.used + size > len(self.arena):
-            self.arena = memory(max(rows + CHUNK // 4, self.room) * ROW.size + len(self.rows))
-            self.used = self.stowed = 0
+            if self.arena is None or not self.returned == self.stowed == self.used or size > len(self.arena):
+                self.arena = memory(max(rows + CHUNK // 4, self.room) * ROW.size + len(self.rows))
+            self.used = self.stowed = self.returned = 0
         start = self.used + len(self.rows)
         return self.arena[start : start + rows * ROW.size]
 
@@ -227,6 +230,7 @@ class Recorder:
             rows = self.arena[self.stowed : self.used]
             self.stowed = self.used
             if self.rows:
+                self.returned += len(rows)
                 rows = bytes(rows) + bytes(self.rows)
                 self.first += len(self.rows) // ROW.size
         else:
@@ -236,6 +240,12 @@ class Recorder:
         self.rows = bytearray()
         self.contour = bytearray()
         return chunk
+
+    def give_back(self, chunk: Chunk) -> None:
+        """Nobody looks at the rows of this chunk any more: their memory is used again."""
+        rows = chunk.rows
+        if isinstance(rows, memoryview) and self.arena is not None and rows.obj is self.arena.obj:
+            self.returned += len(rows)
 
 
 def memory(size: int) -> memoryview:

@@ -6,6 +6,7 @@ Heavy imports wait until they are needed.
 
 from __future__ import annotations
 
+import gc
 import sys
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,8 @@ from typing import Any
 import click
 
 from aircut import __version__
+
+gc.set_threshold(50_000, 20, 50)  # at the start much is made that stays: no use in looking through it for garbage
 
 FORMATS = ("summary", "canon", "json")
 TIME_FORMATS = ("table", "json", "csv")

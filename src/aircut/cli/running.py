@@ -145,6 +145,7 @@ def listing(made: Run, simulation: Simulation | None) -> Iterable[str]:
     with common.progress(f"running {Path(made.files[0]).name}") as advance:
         for chunk in (simulation or made).run():
             yield from text.write(chunk)
+            made.state.out.give_back(chunk)
             advance(made.line, len(made.unit.source))
 
 

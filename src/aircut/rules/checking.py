@@ -19,6 +19,7 @@ def checked(run: Run, policy: Policy) -> Iterator[None]:
     watch = Watch(run)
     for chunk in run.run():
         watch.add(chunk)
+        run.state.out.give_back(chunk)
         yield
     page = Page(run) if isinstance(run, Interpreter) and run.ran else None
     if page is not None and page.macro:  # it runs in its caller's modes
