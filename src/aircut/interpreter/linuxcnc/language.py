@@ -9,7 +9,7 @@ from aircut.interpreter.linuxcnc import (
     calls,
     compensation,
     cycles,
-    later,
+    lathe,
     modes,
     motion,
     offsets,
@@ -37,7 +37,7 @@ CODES = (
     *cycles.CODES,
     *splines.CODES,
     *threading.CODES,
-    *later.CODES,
+    *lathe.CODES,
 )
 
 
