@@ -12,12 +12,16 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from pathlib import Path
+
+import measure
 
 import aircut
 
 LINES = 1_000_000
 GOALS = {"plan of the same": "1,000,000 moves/s",
          "general lane, 1 M lines of CAM": "150,000 lines/s", "memory beyond the file": "250 bytes a move",
+         "file to toolpath, rosetta": "40 times", "file to toolpath, linuxcnc": "40 times",
          "aircut --help": "0.25 s", "aircut check, small file": "0.25 s"}  # fmt: skip
 
 
@@ -81,6 +85,22 @@ def memory() -> float:
     return float(done.stdout)
 
 
+def ratios() -> list[tuple[str, str, float]]:
+    """File to toolpath in memory, in each language, beside LinuxCNC's interpreter: processor time of both."""
+    found: list[tuple[str, str, float]] = []
+    with tempfile.NamedTemporaryFile(suffix=".ngc") as file:
+        file.write(finishing(LINES))
+        file.flush()
+        for dialect in ("rosetta", "linuxcnc"):
+            ours = measure.child(Path(file.name), dialect)[0]
+            theirs = measure.oracle(Path(file.name), 2)
+            text = (
+                f"{ours:.3f} s" if theirs is None else f"{ours:.3f} s, rs274 {theirs:.2f} s: {theirs / ours:.0f} times"
+            )
+            found.append((f"file to toolpath, {dialect}", text, 0.0))
+    return found
+
+
 def process(*args: str) -> float:
     """Seconds of a whole process, best of five."""
     command = [sys.executable, "-m", "aircut", *args]
@@ -98,6 +118,7 @@ def main() -> None:
     columns, _ = timed(lambda: result.toolpath)
     total = loading + running + columns
     rows.append(("general lane, 1 M lines of CAM", f"{LINES / total:,.0f} lines/s", total / yard))
+    rows += ratios()
     rows.append(("memory beyond the file", f"{memory():.0f} bytes a move", 0.0))
     rows.append(("  line table and classes", f"{LINES / loading:,.0f} lines/s", loading / yard))
     checking, _ = timed(program.check)

@@ -123,7 +123,7 @@ class Interpreter(Run):
         out = m.out
         while True:
             self.line = self.next_line
-            if self.line >= len(self.unit.source):
+            if self.line >= len(self.unit.slow):
                 self.run_off()
                 continue
             self.next_line = self.line + 1
