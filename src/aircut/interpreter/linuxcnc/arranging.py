@@ -94,8 +94,10 @@ def gather(letters: Sequence[str], values: Sequence[float], dialect: Dialect) ->
                 raise Refusal(F.REPEATED_WORD, letter, word=letter.upper())
             words[letter] = value
     for letter in "pq":
-        if words.get(letter) == FREE:  # as good as not given
-            del words[letter]
+        if words.get(letter) == FREE:
+            rows = (dialect.codes.get(name) for name in names)
+            if not any(row is not None and letter in row.minus for row in rows):  # it is as good as not given
+                del words[letter]
     if count > MOST_M:
         raise Refusal(F.TOO_MANY_M, "m")
     return names, words

@@ -298,7 +298,7 @@ CODES = (
     Code("G4", "Dwell", dwell, Group.NON_MODAL, Order.DWELL, takes="p", needs="p"),
     *(Code(f"M{n}", "Spindle", partial(turn_spindle, n), Group.SPINDLE, Order.SPINDLE, takes="$") for n in (3, 4, 5)),
     Code("M19", "Orient the spindle", orient, Group.SPINDLE, Order.SPINDLE,
-         takes="rpq$", counts="p", check=check_orient),
+         takes="rpq$", minus="pq", counts="p", check=check_orient),
     Code("M7", "Mist", partial(coolant, True), COOLANT, Order.COOLANT),
     Code("M8", "Flood", partial(coolant, False), COOLANT, Order.COOLANT),
     Code("M9", "Coolant off", partial(coolant, None), COOLANT, Order.COOLANT),

@@ -74,7 +74,7 @@ CODES = (
     io("M63", "Output off with the motion", partial(digital, "CLEAR_MOTION_OUTPUT_BIT"), takes="p"),
     io("M64", "Output on", partial(digital, "SET_AUX_OUTPUT_BIT"), takes="p"),
     io("M65", "Output off", partial(digital, "CLEAR_AUX_OUTPUT_BIT"), takes="p"),
-    io("M66", "Wait for an input", wait, takes="pelq"),
+    io("M66", "Wait for an input", wait, takes="pelq", minus="p"),
     io("M67", "Analog output with the motion", partial(analog, "SET_MOTION_OUTPUT_VALUE"), takes="eq"),
     io("M68", "Analog output", partial(analog, "SET_AUX_OUTPUT_VALUE"), takes="eq"),
 )

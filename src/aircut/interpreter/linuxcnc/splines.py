@@ -114,7 +114,7 @@ def run_collected(m: State, w: Words) -> None:
 spline = partial(Code, group=Group.MOTION, order=Order.MOTION, axes=True)
 
 CODES = (
-    spline("G5", "Cubic spline", cubic, takes="ijpq", needs_axes=True),
+    spline("G5", "Cubic spline", cubic, takes="ijpq", minus="pq", needs_axes=True),
     spline("G5.1", "Quadratic spline", quadratic, takes="ij", needs_axes=True),
     spline("G5.2", "Control point of a spline", collect, takes="pl", modal=True, wakes="p"),
     Code("G5.3", "Run the spline", run_collected, Group.MOTION, Order.NON_MODAL, nameless=True),
