@@ -1,6 +1,7 @@
 """LinuxCNC's language under an INI file, a tool table and a parameter file: as `rs274 -i -t -v` runs it."""
 
 import os
+import random
 import re
 import subprocess
 from pathlib import Path
@@ -8,8 +9,12 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+import aircut
 import oracle
+import oracle_linuxcnc
+from aircut import dialects
 from aircut.cli.main import cli
+from aircut.machine import MachineError, inifile
 
 needs_oracle = pytest.mark.skipif(oracle.PROGRAM is None, reason="rs274 (linuxcnc-uspace) is not installed")
 
@@ -233,6 +238,76 @@ TABLES = [
         ["T0 M6", "T2 M6", "M61 Q8", "G43", "(debug,#5400 #5403 #<_current_tool>)", "M61 Q0"],
     )
 ]  # fmt: skip
+
+
+OPTIONS = [
+    ("AXIS_A", "WRAPPED_ROTARY=1"),
+    ("AXIS_C", "WRAPPED_ROTARY=1"),
+    ("AXIS_B", "LOCKING_INDEXER_JOINT=4"),
+    ("EMCIO", "TOOL_CHANGE_WITH_SPINDLE_ON=1"),
+    ("EMCIO", "TOOL_CHANGE_QUILL_UP=1"),
+    ("EMCIO", "TOOL_CHANGE_AT_G30=1"),
+    ("EMCIO", "RANDOM_TOOLCHANGER=1"),
+    ("RS274NGC", "ORIENT_OFFSET=12.5"),
+    ("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_MM=0.002"),
+    ("RS274NGC", "OWORD_NARGS=1"),
+    ("RS274NGC", "DISABLE_G92_PERSISTENCE=1"),
+]
+#: All topics but splines, after which the position that a probe takes over is not the oracle's, and compensation.
+TOPICS = "straight,arc,polar,mode,offset,setting,auxiliary,tool,comment,home,probe,show,flow,call,saved,cycle,thread"
+PROGRAMS = 80
+
+
+@needs_oracle
+def test_random_programs_under_random_files(tmp_path: Path) -> None:
+    for seed in range(PROGRAMS):
+        chance = random.Random(seed)
+        chosen = chance.sample(OPTIONS, chance.randint(1, 4))
+        sections = dict.fromkeys(name for name, _ in chosen)
+        text = "".join(section(name, *(line for other, line in chosen if other == name)) for name in sections)
+        program = oracle_linuxcnc.Writer(seed, TOPICS).program(25)
+        file = tmp_path / "machine.ini"
+        file.write_text(text)
+        answer = oracle.answer(program, tmp_path, ["-i", str(file)])
+        machine = dialects.machine(dialects.load("linuxcnc"))
+        machine.ini = inifile.load(file)
+        result = aircut.loads(program, "linuxcnc").run(machine=machine)
+        told = "".join(result.canon()).splitlines()
+        difference = oracle.differ(told, [line for line in answer.listing if line != "executing"])
+        assert not difference, f"seed {seed}\n{text}{difference}"
+        assert result.ok == answer.accepted, f"seed {seed}\n{text}{answer.message}"
+
+
+@pytest.mark.parametrize(
+    ("name", "line", "said"),
+    [
+        ("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_MM=0.0009", "MM is 0.001 to 0.02828427"),
+        ("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_MM=0.0283", "MM is 0.001 to 0.02828427"),
+        ("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_INCH=nan", "INCH is 4e-05 to 0.002828427"),
+        ("RS274NGC", "REMAP=M400 ngc=x", "REMAP and RETAIN_G43 cannot be carried out"),
+        ("RS274NGC", "RETAIN_G43=1", "REMAP and RETAIN_G43 cannot be carried out"),
+        ("TRAJ", "SPINDLES=2", "SPINDLES is 1"),
+    ],
+)
+def test_what_cannot_be_run_is_told(name: str, line: str, said: str, tmp_path: Path) -> None:
+    file = tmp_path / "machine.ini"
+    file.write_text(section(name, line))
+    with pytest.raises(MachineError, match=re.escape(said)):
+        inifile.load(file)
+
+
+def test_any_bytes_are_a_file(tmp_path: Path) -> None:
+    file = tmp_path / "machine.ini"
+    file.write_bytes(b"[RS274NGC]\nSUBROUTINE_PATH=~nobody-of-this-name/x:a\0b:\xff:\n[\n]\n=\n[]=\n\\")
+    assert [folder.name for folder in inifile.load(file).folders] == ["x", "\ufffd"]
+
+
+def test_ini_files_are_for_linuxcnc(tmp_path: Path) -> None:
+    (tmp_path / "machine.ini").write_text("")
+    (tmp_path / "part.ngc").write_text("M2\n")
+    done = CliRunner().invoke(cli, ["run", str(tmp_path / "part.ngc"), "--ini", str(tmp_path / "machine.ini")])
+    assert done.exit_code == 2
+    assert "linuxcnc dialect" in done.stderr
 
 
 @needs_oracle

@@ -7,6 +7,7 @@ Names and sections are told apart by case; of a name given twice the first count
 
 from __future__ import annotations
 
+import os
 import re
 from math import sqrt
 from pathlib import Path
@@ -27,7 +28,8 @@ class Ini:
 
     orient: degrees added to M19's R. tolerance: mm by which an arc's radii may differ, by mm a program unit.
     wrapped, indexers: rotary axes by number. folders: where subroutines are searched.
-    random: G10 L1 leaves the tool in the spindle as it is. resets: how often the listing ends with ON_RESET.
+    random: an empty spindle holds tool -1, G10 L1 leaves it as it is, and G43 H0 means the slot in use.
+    resets: how often the listing ends with ON_RESET.
     Raises MachineError for a value that LinuxCNC's interpreter does not start with.
     """
 
@@ -58,7 +60,7 @@ class Ini:
     def folders(self) -> list[Path]:
         """PROGRAM_PREFIX, then those of SUBROUTINE_PATH: from the working directory, else from beside the file."""
         names = [self.text("DISPLAY", "PROGRAM_PREFIX"), *self.text("RS274NGC", "SUBROUTINE_PATH").split(":")]
-        given = [Path(name).expanduser() for name in names if name]
+        given = [Path(os.path.expanduser(name)) for name in names if name and "\0" not in name]
         return [folder if folder.is_dir() else self.path.parent / folder for folder in given]
 
     def text(self, section: str, name: str) -> str:

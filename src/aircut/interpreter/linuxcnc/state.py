@@ -19,6 +19,7 @@ from aircut.interpreter.state import INCH
 from aircut.interpreter.table import Code
 from aircut.machine.inifile import NO_INI
 from aircut.machine.tools import EMPTY, Tool
+from aircut.machine.tooltable import UNUSED
 
 NINE = "xyzabcuvw"
 NUMBERED_NINE = tuple(enumerate(NINE))
@@ -67,6 +68,8 @@ class State(house.State):
         self.told = [0.0] * 9
         self.stale = False  # the position is taken from there before the next block
         self.slots: list[Tool] = list(machine.slots or (EMPTY, *machine.tools.values()))  # slot 0 is the spindle
+        if self.ini.random and self.slots[0] is EMPTY:
+            self.slots[0] = UNUSED
         self.show_tool()
         self.slot = min(1, len(self.slots) - 1)  # of the tool in the spindle, before any change
         self.changed: Tool | None = None  # by M6 or M61 of this block

@@ -93,6 +93,8 @@ def of_tool(m: State, w: Words) -> list[float]:
         return (m.changed or m.slots[0]).offsets()
     if w["h"] < 0:
         raise Refusal(F.NO_TOOL, "h", tool=int(w["h"]))
+    if w["h"] == 0 and m.ini.random:
+        return m.slots[m.slot].offsets()
     return m.slots[m.slot_of(int(w["h"]))].offsets()
 
 
