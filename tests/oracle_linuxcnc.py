@@ -4,7 +4,12 @@
 from __future__ import annotations
 
 import random
+import subprocess
 from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import oracle
 
 FUNCTIONS = ("abs", "acos", "asin", "cos", "exp", "fix", "fup", "round", "ln", "sin", "sqrt", "tan")
 OPERATORS = ("+", "-", "*", "/", "mod", "**", "eq", "ne", "gt", "ge", "lt", "le", "and", "or", "xor")
@@ -190,6 +195,26 @@ NAMES = [
     "_call_level",
     "_remap_level",
 ]
+
+
+class Answer(NamedTuple):
+    """What the interpreter made of a program. line: text of the one it refused, message: why."""
+
+    listing: list[str]
+    accepted: bool
+    message: str
+    line: str
+
+
+def ask(text: str, folder: Path) -> Answer:
+    """Run a program. folder: its own, to write in."""
+    file = folder / "program.ngc"
+    file.write_text(text)
+    assert oracle.PROGRAM
+    done = subprocess.run([oracle.PROGRAM, "-g", str(file)], capture_output=True, text=True, timeout=60, cwd=folder,
+                          env={"HOME": str(folder)})  # fmt: skip
+    told = [*(done.stderr.splitlines()[1:] if done.returncode else ()), "", ""]
+    return Answer(done.stdout.splitlines(), done.returncode == 0, told[0], told[1].strip())
 
 
 class Writer:

@@ -127,7 +127,6 @@ class Code(NamedTuple):
     counts: str = ""  # letters of words that must be whole numbers
     least: int = -1000  # and at least this
     text: bool = False  # its P may be a string
-    minus: str = ""  # of P and Q, those whose -1 is a value; else it is as good as not given (LinuxCNC's language)
 
     @property
     def number(self) -> float:

@@ -23,7 +23,7 @@ WHOLE = {"m": "a whole number", "t": "a whole number", "h": "a whole number", "l
 LOWEST = {"f": 0.0, "s": 0.0, "g": 0.0, "m": 0.0, "l": 0.0, "h": -1.0, "t": 0.0}
 TWICE = "@^"  # of these the last counts
 TURNS = 0.001  # what a P that counts turns or directions may differ from a whole number
-FREE = -1.0  # a P or Q up to this may be given again
+FREE = -1.0  # a P or Q up to this may be given again; just this much counts as not given where it matters
 
 
 def check_values(m: State, codes: Sequence[Code], words: Mapping[str, float]) -> None:
@@ -33,7 +33,7 @@ def check_values(m: State, codes: Sequence[Code], words: Mapping[str, float]) ->
     absolute = m.absolute
     for row in codes:
         absolute = {"G90": True, "G91": False}.get(row.name, absolute)
-        if row.fits and not absolute:
+        if "G0" in row.fits and not absolute:
             raise Refusal(F.WRONG_STATE, "g", what="G53 is not possible under G91", hint="")
         if row.check is not None:
             row.check(m, words)
@@ -44,6 +44,11 @@ def check_values(m: State, codes: Sequence[Code], words: Mapping[str, float]) ->
                     raise Refusal(F.NOT_INTEGER, letter, word=letter.upper(), value=value)
                 if round(value) < row.least:
                     raise Refusal(F.BAD_VALUE, letter, word=letter.upper(), value=value, wanted="1 at least")
+
+
+def given(w: Mapping[str, float], letter: str) -> bool:
+    """Whether a word is there; a P or Q must not be the number that LinuxCNC keeps for none."""
+    return letter in w and not (letter in "pq" and w[letter] == FREE)
 
 
 class Steps(NamedTuple):
@@ -93,11 +98,6 @@ def gather(letters: Sequence[str], values: Sequence[float], dialect: Dialect) ->
             if letter in words and letter not in TWICE and not (letter in "pq" and words[letter] <= FREE):
                 raise Refusal(F.REPEATED_WORD, letter, word=letter.upper())
             words[letter] = value
-    for letter in "pq":
-        if words.get(letter) == FREE:
-            rows = (dialect.codes.get(name) for name in names)
-            if not any(row is not None and letter in row.minus for row in rows):  # it is as good as not given
-                del words[letter]
     if count > MOST_M:
         raise Refusal(F.TOO_MANY_M, "m")
     return names, words
@@ -130,12 +130,11 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
     rows = [row for row in rows if not (row.weak and any(o.group & row.group for o in rows if not o.weak))]
     rows = list(dict.fromkeys(rows))  # what is weak may stand twice
     motion = next((row for row in rows if row.group & Group.MOTION and not row.weak), None)
+    written = motion
     takers = [row for row in rows if row.axes and row is not motion]
-    if motion is not None and takers:
-        if axes or any(row.group & Group.NON_MODAL for row in takers):
-            raise Refusal(F.AXIS_CONFLICT, "g", first=takers[0].name, second=motion.name)
-    if axes and motion is not None and motion.nameless and modal.weak:  # G5.3 takes no axes, and nothing else does
-        raise Refusal(F.NO_MOTION_MODE, axes[0])
+    rivals = [row for row in takers if row.group & Group.NON_MODAL]  # the words of G43.1 may serve a motion too
+    if motion is not None and rivals:
+        raise Refusal(F.AXIS_CONFLICT, "g", first=rivals[0].name, second=motion.name)
     if axes and not takers and motion is None:
         if cancels:
             raise Refusal(F.G80_AXES, axes[0])
@@ -148,10 +147,13 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
         if any(letter in modal.wakes and letter not in used for letter in letters):
             motion = modal
             rows.append(modal)
-    if polar and (takers or any(row.fits for row in rows)):
+    if polar and (takers or any("G0" in row.fits for row in rows)):
         raise Refusal(F.UNUSED_WORD, "@", word="@ or ^")
-    if any(row.fits and (motion or modal).name not in row.fits for row in rows):
-        raise Refusal(F.MISFIT, "g", code="G53", fits="G0 or G1", motion=(motion or modal).name)
+    for row in rows:
+        mover = written if row.nameless else motion
+        beside = mover.name if mover else "G80" if cancels else ""
+        if row.fits and beside not in row.fits:
+            raise Refusal(F.MISFIT, "g", code=row.name, fits=" or ".join(filter(None, row.fits)), motion=beside)
     for row in rows:
         if row.needs_axes and not axes:
             raise Refusal(F.MISSING_AXES, code=row.name)

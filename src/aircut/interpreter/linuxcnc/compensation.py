@@ -6,13 +6,14 @@ Source: the canonical listing, section 12.
 from __future__ import annotations
 
 from functools import partial
+from math import pi
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
-from aircut.geometry.offsetting import Point
+from aircut.geometry.offsetting import Element, Point, crossings
 from aircut.interpreter import path
 from aircut.interpreter import state as house
-from aircut.interpreter.compensation import Move, Nist
+from aircut.interpreter.compensation import Held, Move, Nist
 from aircut.interpreter.cutter import SHIFTS, SLOT, Leaving
 from aircut.interpreter.linuxcnc.arranging import whole
 from aircut.interpreter.linuxcnc.modes import said
@@ -23,6 +24,7 @@ from aircut.interpreter.table import Code, Group, Order, Words
 from aircut.language.arithmetic import EQUAL
 
 ORIENTATIONS = 9
+BACK = 0.05  # radians from a half turn
 #: Events that do not wait behind a move held back.
 AT_ONCE = frozenset(("MESSAGE", "LOG", "PRINT", "SELECT_TOOL", "SELECT_PLANE", "USE_LENGTH_UNITS"))
 
@@ -31,6 +33,38 @@ class Beside(Nist):
     """The stage; its moves carry the line of the block that released them, as the listing has them."""
 
     written: list[float] | None = None  # end of the last move written, machine coordinates
+
+    def corner(self, first: Element, second: Element) -> float:
+        """Where the way leads back, or almost, the bend of the later arc tells inside from outside."""
+        angle = super().corner(first, second)
+        if abs(angle) <= pi - BACK:
+            return angle
+        return pi if self.side * (second.sign or first.sign) < 0 else -pi
+
+    def outside(self, m: house.State, move: Move, onward: Onward) -> None:
+        """Before an arc nobody looks whether the move leads backwards, if it is not cut back at its end."""
+        assert self.held is not None and move.element is not None
+        self.release(m, self.held.path.end, onward, checked=move.element.center is None)
+
+    def cut_back(self, m: house.State, held: Held, move: Move, path: Element) -> Point:
+        """The meeting that stays the corner's while the corner closes, near or not. Raises Refusal."""
+        first = held.guide
+        if first.center is path.center is None:
+            return super().cut_back(m, held, move, path)
+        found = crossings(first, path)
+        if not found:
+            raise self.gouging(m, held.move, move)
+        if first.center is None or path.center is None:
+            inside = (first.sign or path.sign) * self.side > 0
+            later = inside == (first.center is None)  # along the line
+        else:
+            later = first.sign * path.sign * self.side > 0  # to the left of the way between the centers
+        return found[-1 if later else 0]
+
+    def check(self, m: house.State, held: Held, end: Point) -> None:
+        """The entry may end anywhere."""
+        if not held.first:
+            super().check(m, held, end)
 
     def write(self, m: house.State, move: Move, end: Point, center: Point | None, turns: int, onward: Onward) -> None:
         super().write(m, move._replace(line=m.out.line, file=m.out.file), end, center, turns, onward)

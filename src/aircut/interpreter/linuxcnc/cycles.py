@@ -29,6 +29,7 @@ from aircut.interpreter.cycles import (
     drill_and_dwell,
 )
 from aircut.interpreter.drilling import DEPTH, STARTS, Sticky
+from aircut.interpreter.linuxcnc.arranging import given
 from aircut.interpreter.linuxcnc.motion import CENTER_WORDS, FEED, TRAVERSE, go, goal, wrong
 from aircut.interpreter.linuxcnc.state import NINE, State
 from aircut.interpreter.linuxcnc.turning import begin_exact, end_exact
@@ -89,14 +90,15 @@ def run(cycle: Cycle, m: State, w: Words) -> None:
     normal = PLANE_AXES[m.plane][2]
     check(cycle, m, w)
     sticky = remember(cycle, normal, m, w)
+    again = m.cycle is not None and m.cycle.name == cycle.name
     hole = measure(sticky, normal, m)
     repeats = int(w.get("l", 1.0))
     if repeats < 1:
         raise Refusal(F.BAD_VALUE, "l", word="L", value=repeats, wanted="how often, from 1")
-    if repeats * (hole.top - hole.bottom) > MOST * (hole.bite or 1e9):
+    if hole.bite > 0.0 and repeats * (hole.top - hole.bottom) > MOST * hole.bite:
         raise Refusal(F.BAD_VALUE, "q", word="Q", value=hole.bite, wanted="so many bites are a mistake")
     m.cycle = sticky
-    drive(cycle, hole, sticky, repeats, m, w)
+    drive(cycle, hole, sticky, repeats, again, m, w)
 
 
 def check(cycle: Cycle, m: State, w: Words) -> None:
@@ -119,19 +121,17 @@ def check_words(cycle: Cycle, m: State, w: Words) -> None:
 
 
 def remember(cycle: Cycle, normal: int, m: State, w: Words) -> Sticky:
-    """The words in force, those of this block included. Raises Refusal where one is missing."""
+    """The words in force, those of this block included. Raises Refusal where R or the depth is missing."""
     axis = NINE[normal]
     before = m.cycle
     words = m.sticky
     again = before is not None and before.name == cycle.name
-    words |= {letter: w[letter] for letter in "rpqijk" if letter in w}
+    words |= {letter: w[letter] for letter in "rpqijk" if given(w, letter)}
     if axis in w:
         words[DEPTH] = m.axis(w, normal) / m.unit
-    for letter in (DEPTH, "r", *cycle.needs):
-        if not again and letter not in w and not (letter == DEPTH and axis in w):
-            raise Refusal(
-                F.MISSING_WORD, code=cycle.name, word=(axis if letter == DEPTH else letter).upper(), meaning=""
-            )
+    for letter in (axis, "r"):
+        if not again and letter not in w:
+            raise Refusal(F.MISSING_WORD, code=cycle.name, word=letter.upper(), meaning="")
     level = m.position[normal] / m.unit if before is None else before.level
     return Sticky(cycle.name, level, dict(words))
 
@@ -148,14 +148,12 @@ def measure(sticky: Sticky, normal: int, m: State) -> Hole:
     if top < bottom:
         raise Refusal(F.CYCLE_BELOW, "r", code=sticky.name, r=top, bottom=bottom, axis=NINE[normal].upper())
     bite = words.get("q", 0.0)
-    if "q" in words and bite <= 0.0:
-        raise Refusal(F.BAD_VALUE, "q", word="Q", value=bite, wanted="the depth of a bite is above zero")
     clear = max(top, sticky.level) if m.retract == 98 else top
     return Hole(clear, top, bottom, words.get("p", 0.0), bite, CHIP_GAP[m.unit], middle)
 
 
-def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, m: State, w: Words) -> None:
-    """Move: to each place, down to R, and the steps there."""
+def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, again: bool, m: State, w: Words) -> None:
+    """Move: to each place, down to R, and the steps there. Raises Refusal where P, Q, I, J or K is missing or wrong."""
     u, v, normal = PLANE_AXES[m.plane]
     across = {letter: value for letter, value in w.items() if letter != NINE[normal]}
     height = m.position[normal] / m.unit
@@ -164,6 +162,10 @@ def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, m: State, w: W
         height = hole.top
         hole = hole._replace(clear=hole.top)
     flags = begin_exact(m)
+    if not again:
+        for letter in cycle.needs:
+            if not given(w, letter):
+                raise Refusal(F.MISSING_WORD, code=cycle.name, word=letter.upper(), meaning="")
     for at in range(repeats):
         if at or height <= hole.top:
             height = hole.clear
@@ -172,6 +174,8 @@ def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, m: State, w: W
         go(m, TRAVERSE, place)
         if height > hole.top:
             to_height(m, TRAVERSE, hole.top)
+        if "q" in cycle.needs and hole.bite <= 0.0:
+            raise Refusal(F.BAD_VALUE, "q", word="Q", value=hole.bite, wanted="the depth of a bite is above zero")
         if cycle.turning and m.spindle not in cycle.turning:
             raise Refusal(F.CYCLE_SPINDLE, code=cycle.name)
         center = m.position[u], m.position[v]

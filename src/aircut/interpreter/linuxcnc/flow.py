@@ -83,6 +83,7 @@ class Flow:
         self.run = run
         self.marks: dict[str, Mark] = {}
         self.stack: list[Level] = []
+        self.uncalled: dict[int, tuple[Text, int]] = {}  # by depth of calls: behind which line an M98 L0 stood
         self.search: Search | None = None
         self.sub = ""  # that is being run
         self.breaking = False
@@ -280,7 +281,7 @@ class Flow:
     def return_(self, line: OLine, name: str, sought: bool = False) -> None:
         if not self.stack:
             raise refuse(f"{line.keyword.upper()} outside a subroutine")
-        if self.stack[-1].fanuc:
+        if self.stack[-1].fanuc or len(self.stack) in self.uncalled:
             raise refuse("a subroutine of M98 ends with M99")
         self.give_back(line)
         self.leave()
@@ -311,6 +312,7 @@ class Flow:
             m.numbered[1 : LOCALS + 1] = [*values, *[0.0] * (LOCALS - len(values))]
         self.stack.append(Level(run.unit, run.next_line, self.sub, kept, m.scope, name, fanuc, m.saved, count))
         m.calls = len(self.stack)
+        self.uncalled.pop(m.calls, None)
         counted = m.ini.counts_arguments and values is not None
         m.scope = {ARGUMENTS: float(len(values or ()))} if counted else {}
         m.saved = None
@@ -358,15 +360,24 @@ class Flow:
             raise refuse(f"{name} is not for this kind of call", KINDS)
 
     def m98(self, name: str, count: int) -> None:
-        """M98: call a bare number, so many times. Raises Refusal."""
+        """M98: call a bare number, so many times. Raises Refusal.
+
+        L0 calls nothing; but LinuxCNC takes the level it stands in for one of M98, and goes back there at the next M99.
+        """
         bar_fanuc(self.run)
         if count > 0:
             self.enter(name, None, count)
+        else:
+            self.uncalled[len(self.stack)] = (self.run.unit, self.run.next_line)
 
     def m99(self, rest: tuple[int, int]) -> None:
         """M99 in a subroutine: back to M98, or run again. rest: what follows it in the line. Raises Refusal."""
         if rest[0] < rest[1]:
             raise Refusal(F.MISPLACED_WORDS, where=rest, what="M99")
+        after = self.uncalled.pop(len(self.stack), None)
+        if after is not None:
+            self.run.jump(*after)
+            return
         level = self.stack[-1]
         if not level.fanuc:
             raise refuse("a subroutine of CALL ends with ENDSUB")

@@ -345,6 +345,7 @@ class Interpreter(Run):
         m.machine_frame = False
         m.changed = None
         before = self.modal, m.motion_name
+        m.motion_before = m.motion_name
         for nth, row in enumerate(steps.codes):
             if row.nameless:
                 self.modal = self.dialect.codes["g80"]

@@ -10,6 +10,7 @@ from functools import partial
 from aircut.canon import EXACT_PATH, EXACT_STOP
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.interpreter.linuxcnc.arranging import given
 from aircut.interpreter.linuxcnc.motion import wrong
 from aircut.interpreter.linuxcnc.state import LINEAR, State
 from aircut.interpreter.linuxcnc.turning import tell_blending
@@ -95,7 +96,8 @@ def constant_revolutions(m: State, w: Words) -> None:
 
 
 def orient(m: State, w: Words) -> None:
-    """M19: turn the spindle to R degrees, and wait for it with Q."""
+    """M19: turn the spindle to R degrees, and wait for it with Q. Raises Refusal."""
+    m.spindle = 5
     if "r" in w or "p" in w:
         m.out.event("ORIENT_SPINDLE", 0, w.get("r", 0.0) + m.ini.orient, int(w.get("p", 0.0)))
     if "q" in w:
@@ -185,8 +187,8 @@ def blending(m: State, w: Words) -> None:
         raise Refusal(F.UNDER_COMPENSATION, what="G64")
     m.path_mode = 64
     m.flags = 0
-    m.blend = m.length(w, "p")
-    m.thinning = m.length(w, "q", m.blend)
+    m.blend = max(m.length(w, "p"), 0.0)
+    m.thinning = m.length(w, "q") if w.get("q", -1.0) >= 0.0 else m.blend
     tell_blending(m)
 
 
@@ -247,9 +249,13 @@ def dwell(m: State, w: Words) -> None:
     """G4. Raises Refusal."""
     if any(row.name in ("G2", "G3") for row in m.codes):
         raise wrong("G4 is not possible with G2 or G3: both use P")
-    if w["p"] < 0.0:
-        raise Refusal(F.BAD_VALUE, "p", word="P", value=w["p"], wanted="seconds from 0")
     m.out.event("DWELL", w["p"])
+
+
+def check_dwell(m: State, w: Words) -> None:
+    """Raises Refusal."""
+    if not given(w, "p"):
+        raise Refusal(F.MISSING_WORD, code="G4", word="P", meaning="seconds")
 
 
 def stop(event: str, m: State, w: Words) -> None:
@@ -295,10 +301,10 @@ CODES = (
     Code("G91.1", "Incremental centers", partial(set_arc_distance, False), Group.ARC_DISTANCE, Order.ARC_DISTANCE),
     Code("G98", "Retract to the start", partial(set_retract, 98), Group.RETRACT, Order.RETRACT),
     Code("G99", "Retract to R", partial(set_retract, 99), Group.RETRACT, Order.RETRACT),
-    Code("G4", "Dwell", dwell, Group.NON_MODAL, Order.DWELL, takes="p", needs="p"),
+    Code("G4", "Dwell", dwell, Group.NON_MODAL, Order.DWELL, takes="p", check=check_dwell),
     *(Code(f"M{n}", "Spindle", partial(turn_spindle, n), Group.SPINDLE, Order.SPINDLE, takes="$") for n in (3, 4, 5)),
     Code("M19", "Orient the spindle", orient, Group.SPINDLE, Order.SPINDLE,
-         takes="rpq$", minus="pq", counts="p", check=check_orient),
+         takes="rpq$", counts="p", check=check_orient),
     Code("M7", "Mist", partial(coolant, True), COOLANT, Order.COOLANT),
     Code("M8", "Flood", partial(coolant, False), COOLANT, Order.COOLANT),
     Code("M9", "Coolant off", partial(coolant, None), COOLANT, Order.COOLANT),

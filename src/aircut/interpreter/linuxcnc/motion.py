@@ -379,7 +379,7 @@ def store_home(stored: int, m: State, w: Words) -> None:
 
 
 move = partial(Code, group=Group.MOTION, order=Order.MOTION, axes=True, modal=True)
-arc_move = partial(move, takes="ijkrp", wakes="ijk", counts="p", least=1, minus="p")
+arc_move = partial(move, takes="ijkrp", wakes="ijk", counts="p", least=1)
 single = partial(Code, group=Group.NON_MODAL, order=Order.NON_MODAL)
 
 CODES = (

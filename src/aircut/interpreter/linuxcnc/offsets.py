@@ -11,6 +11,7 @@ from msgspec.structs import replace
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.interpreter.linuxcnc.arranging import given
 from aircut.interpreter.linuxcnc.modes import said
 from aircut.interpreter.linuxcnc.motion import wrong
 from aircut.interpreter.linuxcnc.state import G92, LINEAR, NUMBERED_NINE, ORIGINS, STEP, SYSTEM, State
@@ -122,7 +123,7 @@ def setting_of(m: State, w: Words) -> Code:
     for letter in row.needs:
         if letter not in w:
             raise Refusal(F.MISSING_WORD, code=row.name, word=letter.upper(), meaning="")
-    for letter in w:
+    for letter in w if int(w["l"]) else ():
         if letter in "ijkqrp@^" and letter not in row.takes:
             raise Refusal(F.UNUSED_WORD, letter, word=letter.upper())
     return row
@@ -207,7 +208,7 @@ def set_tool(kind: int, m: State, w: Words) -> None:
         raise Refusal(F.BAD_VALUE, "p", word="P", value=w["p"], wanted="a tool's number")
     slot = m.slot_of(number)
     tool = m.slots[slot]
-    if "q" in w and (abs(w["q"] - round(w["q"])) > EQUAL or not 0 <= round(w["q"]) <= 9):
+    if given(w, "q") and (abs(w["q"] - round(w["q"])) > EQUAL or not 0 <= round(w["q"]) <= 9):
         raise Refusal(F.BAD_VALUE, "q", word="Q", value=w["q"], wanted="an orientation, 0 to 9")
     changes: dict[str, float] = {}
     reads = tool_reads(kind, m)
@@ -217,7 +218,7 @@ def set_tool(kind: int, m: State, w: Words) -> None:
     if "r" in w:
         changes["diameter"] = 2.0 * m.length(w, "r")
     changes |= {field: w[letter] for letter, field in (("i", "p1"), ("j", "p2")) if letter in w}
-    if "q" in w:
+    if given(w, "q"):
         changes["p3"] = float(round(w["q"]))
     tool = m.slots[slot] = replace(tool, **changes)
     tell_tool(m, slot)
@@ -261,8 +262,8 @@ CODES = (
 SETTINGS = {
     0: setting("G10 L0", "Reload the tool table", reload_tools),
     1: setting("G10 L1", "Set a tool's offsets", partial(set_tool, 1), takes="prijq", needs="p"),
-    2: setting("G10 L2", "Set a work system", partial(set_system, False), takes="pr", needs="p"),
+    2: setting("G10 L2", "Set a work system", partial(set_system, False), takes="pqr", needs="p"),
     10: setting("G10 L10", "Set a tool by the position", partial(set_tool, 10), takes="prijq", needs="p"),
     11: setting("G10 L11", "Set a tool by the position in G59.3", partial(set_tool, 11), takes="prijq", needs="p"),
-    20: setting("G10 L20", "Set a work system by the position", partial(set_system, True), takes="p", needs="p"),
+    20: setting("G10 L20", "Set a work system by the position", partial(set_system, True), takes="pq", needs="p"),
 }

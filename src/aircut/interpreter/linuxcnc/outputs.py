@@ -14,7 +14,7 @@ from aircut.interpreter.linuxcnc.state import INPUT, State
 from aircut.interpreter.table import Code, Group, Order, Words
 
 MOST = 1e9
-NOTHING = -1.0  # what stands for an analog value that is not given
+NO_VALUE = -1.0  # of M67 and M68 without Q
 
 
 def bar(m: State) -> None:
@@ -26,10 +26,7 @@ def index(w: Words, letter: str) -> int:
     """The whole number next to a word. Raises Refusal."""
     if letter not in w:
         raise Refusal(F.MISSING_WORD, code="M62 to M68", word=letter.upper(), meaning="the number of the output")
-    number = round(w[letter]) if abs(w[letter]) < MOST else -1
-    if number < 0:
-        raise Refusal(F.BAD_VALUE, letter, word=letter.upper(), value=w[letter], wanted="an output, from 0")
-    return number
+    return round(w[letter]) if abs(w[letter]) < MOST else -1
 
 
 def digital(event: str, m: State, w: Words) -> None:
@@ -41,7 +38,10 @@ def digital(event: str, m: State, w: Words) -> None:
 def analog(event: str, m: State, w: Words) -> None:
     """M67, M68: output E to Q."""
     bar(m)
-    m.out.event(event, index(w, "e"), w.get("q", NOTHING))
+    number = index(w, "e")
+    if number < 0:
+        raise Refusal(F.BAD_VALUE, "e", word="E", value=w["e"], wanted="an output, from 0")
+    m.out.event(event, number, w.get("q", NO_VALUE))
 
 
 def wait(m: State, w: Words) -> None:
@@ -49,6 +49,9 @@ def wait(m: State, w: Words) -> None:
     bar(m)
     if ("p" in w) == ("e" in w):
         raise wrong("M66 needs P or E, and not both")
+    if index(w, "p" if "p" in w else "e") < 0:
+        letter = "p" if "p" in w else "e"
+        raise Refusal(F.BAD_VALUE, letter, word=letter.upper(), value=w[letter], wanted="an input, from 0")
     kind = int(w.get("l", 0.0))
     if not 0 <= kind <= 4:
         raise Refusal(F.BAD_VALUE, "l", word="L", value=kind, wanted="0 to 4")
@@ -56,7 +59,6 @@ def wait(m: State, w: Words) -> None:
         raise wrong("M66 L1 to L4 needs Q above zero")
     if "e" in w and kind:
         raise wrong("M66 E takes only L0")
-    index(w, "p" if "p" in w else "e")
     if "p" in w:
         m.numbered[INPUT] = float(m.numbered[INPUT] != 0.0)
 
@@ -74,7 +76,7 @@ CODES = (
     io("M63", "Output off with the motion", partial(digital, "CLEAR_MOTION_OUTPUT_BIT"), takes="p"),
     io("M64", "Output on", partial(digital, "SET_AUX_OUTPUT_BIT"), takes="p"),
     io("M65", "Output off", partial(digital, "CLEAR_AUX_OUTPUT_BIT"), takes="p"),
-    io("M66", "Wait for an input", wait, takes="pelq", minus="p"),
+    io("M66", "Wait for an input", wait, takes="pelq"),
     io("M67", "Analog output with the motion", partial(analog, "SET_MOTION_OUTPUT_VALUE"), takes="eq"),
     io("M68", "Analog output", partial(analog, "SET_AUX_OUTPUT_VALUE"), takes="eq"),
 )

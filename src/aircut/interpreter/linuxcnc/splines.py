@@ -13,11 +13,12 @@ from aircut.canon import TOLD
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.geometry.splines import Point, bezier, nurbs
-from aircut.interpreter.linuxcnc.motion import FEED, check_feed, go, goal, wrong
+from aircut.interpreter.linuxcnc.motion import FEED, go, goal, wrong
 from aircut.interpreter.linuxcnc.state import State
 from aircut.interpreter.table import Code, Group, Order, Words
 
 LEAST_ORDER = 3
+FREE = -1.0  # P that counts as not given
 
 
 def check(m: State, w: Words) -> None:
@@ -26,17 +27,26 @@ def check(m: State, w: Words) -> None:
         raise wrong("splines need G17")
     if any(letter in w for letter in "zabcuvw"):
         raise wrong("splines move X and Y alone")
-    check_feed(m, w)
+    check_spline_feed(m, w)
     if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="a spline")
+
+
+def check_spline_feed(m: State, w: Words) -> None:
+    """G93 wants an F word, the others some feed; a spindle that stands is not asked for. Raises Refusal."""
+    if m.feed_mode == 93:
+        if "f" not in w:
+            raise Refusal(F.INVERSE_TIME_FEED, "f")
+    elif m.gave_feed <= 0.0:
+        raise Refusal(F.MISSING_FEED)
 
 
 def trace(m: State, count: int, points: Sequence[Point], end: list[float]) -> None:
     """Tell a spline of so many control points, and write its moves.
 
-    LinuxCNC's stand-alone interpreter does not remember splines among what it has printed.
+    LinuxCNC's stand-alone interpreter takes a spline for a move to X0 Y0.
     """
-    told = m.told
+    told = [0.0, 0.0, *m.told[2:]]
     m.out.event("NURBS_FEED", count)
     for x, y in points:
         go(m, FEED, [x, y, *m.position[2:]], m.gave_feed * m.unit, m.flags | TOLD)
@@ -81,32 +91,37 @@ def quadratic(m: State, w: Words) -> None:
 
 
 def collect(m: State, w: Words) -> None:
-    """G5.2: a control point and its weight. Raises Refusal."""
-    if m.feed_mode != 93 and m.gave_feed <= 0.0:
-        raise Refusal(F.MISSING_FEED)
+    """G5.2: a control point and its weight. Raises Refusal.
+
+    X and Y are numbers of the program, absolute under G91 too, and read in the unit of the G5.3; the
+    other axes are passed over. Points before another motion are forgotten, but only once the checks are done.
+    """
     named = "x" in w or "y" in w
     if named and not ("x" in w and "y" in w):
         raise wrong("a control point needs X and Y")
-    if "p" in w and w["p"] <= 0.0:
-        raise Refusal(F.BAD_VALUE, "p", word="P", value=w["p"], wanted="a weight above zero")
-    if named and "p" not in w:
-        raise Refusal(F.MISSING_WORD, code="G5.2", word="P", meaning="the weight of the control point")
-    if not m.spline:
-        m.spline_order = max(LEAST_ORDER, int(w.get("l", LEAST_ORDER)))
-        m.spline = [(m.position[0], m.position[1], 1.0 if named else w.get("p", 1.0))]
-        if not named:
-            return
-    place = goal(m, w)
-    m.spline.append((place[0], place[1], w.get("p", 1.0)))
+    if m.spline and not w.get("p", FREE) > 0.0:
+        raise Refusal(F.MISSING_WORD, code="G5.2", word="P", meaning="the weight of the control point, above zero")
+    if m.spline and not named:
+        raise wrong("P without X and Y is for the first control point")
+    if m.feed_mode != 93 and m.gave_feed <= 0.0:
+        raise Refusal(F.MISSING_FEED)
+    weight = w.get("p", 1.0)
+    if not m.spline or m.motion_before != "g5.2":
+        m.spline_order = LEAST_ORDER
+        m.spline = [(m.position[0] / m.unit, m.position[1] / m.unit, 1.0 if named else weight)]
+    m.spline_order = max(LEAST_ORDER, int(w.get("l", m.spline_order)))
+    if named:
+        m.spline.append((w["x"] / (2.0 if m.diameter else 1.0), w["y"], weight))
 
 
 def run_collected(m: State, w: Words) -> None:
     """G5.3: the spline of the points collected. Raises Refusal."""
-    if not m.spline:
+    if m.motion_before != "g5.2":
         raise wrong("G5.3 without G5.2 before")
     if len(m.spline) < m.spline_order:
         raise wrong(f"a spline of order {m.spline_order} needs as many points; there are {len(m.spline)}")
-    points, m.spline = m.spline, []
+    points = [(x * m.unit, y * m.unit, weight if weight > 0.0 else 1.0) for x, y, weight in m.spline]
+    m.spline = []
     end = [points[-1][0], points[-1][1], *m.position[2:]]
     trace(m, len(points), nurbs(points, m.spline_order), end)
 
@@ -114,8 +129,8 @@ def run_collected(m: State, w: Words) -> None:
 spline = partial(Code, group=Group.MOTION, order=Order.MOTION, axes=True)
 
 CODES = (
-    spline("G5", "Cubic spline", cubic, takes="ijpq", minus="pq", needs_axes=True),
+    spline("G5", "Cubic spline", cubic, takes="ijpq", needs_axes=True),
     spline("G5.1", "Quadratic spline", quadratic, takes="ij", needs_axes=True),
-    spline("G5.2", "Control point of a spline", collect, takes="pl", modal=True, wakes="p"),
-    Code("G5.3", "Run the spline", run_collected, Group.MOTION, Order.NON_MODAL, nameless=True),
+    spline("G5.2", "Control point of a spline", collect, takes="pl", modal=True),
+    Code("G5.3", "Run the spline", run_collected, Group.NON_MODAL, Order.NON_MODAL, nameless=True, fits=("G5.2", "")),
 )

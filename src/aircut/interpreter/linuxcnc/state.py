@@ -78,6 +78,7 @@ class State(house.State):
         self.words: dict[str, float] = {}  # of the block
         self.codes: tuple[Code, ...] = ()  # of the block
         self.motion_name = "g80"
+        self.motion_before = "g80"  # before the block
         self.retract = 99
         self.diameter = False  # G7
         self.feed_mode = 94

@@ -9,6 +9,7 @@ from functools import partial
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.interpreter.linuxcnc.arranging import given
 from aircut.interpreter.linuxcnc.motion import home_of, index_and_go, wrong
 from aircut.interpreter.linuxcnc.state import G30, NUMBERED_NINE, State
 from aircut.interpreter.state import EQUAL
@@ -61,7 +62,7 @@ def load(m: State, slot: int) -> None:
 
 def declare(m: State, w: Words) -> None:
     """M61: the tool Q is in the spindle. Raises Refusal."""
-    if "q" not in w:
+    if not given(w, "q"):
         raise Refusal(F.MISSING_WORD, code="M61", word="Q", meaning="the tool's number")
     number = round(w["q"])
     if abs(w["q"] - number) > EQUAL or number < 0:
