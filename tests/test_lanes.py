@@ -13,6 +13,7 @@ import pytest
 
 import aircut
 from aircut.interpreter import lane
+from aircut.kernels import holes as holes_kernel
 from aircut.kernels import plain, scan
 from aircut.machine import built_in
 from aircut.source import POWERS, Batch, Source
@@ -50,12 +51,28 @@ def plain_line(rng: random.Random) -> str:
     return rng.choice(("", "", " ")).join(words) + rng.choice(("", "", "", " ", "\r", " ; end"))
 
 
+def holes(rng: random.Random) -> list[str]:
+    """A canned cycle and the places of its holes."""
+    cycle = rng.choice(("G81 Z-3 R2", "G82 Z-3 R2 P0.5", "G83 Z-9 R2 Q2", "G73 Z-9 R2 Q2", "G85 Z-4 R3",
+                        "G86 Z-4 R2 P0", "G89 Z-3 R2 P1", "G88 Z-3 R2 P1"))  # fmt: skip
+    lines = [f"M3 S500 {rng.choice(('G98', 'G99'))}", f"G0 Z{rng.choice((2, 5, -1))}", f"{cycle} X1 Y1 F100"]
+    for _ in range(rng.randint(1, 12)):
+        x, y = rng.randint(-3, 3), rng.choice((rng.randint(-2, 2), 900))
+        place = rng.choice(
+            (f"X{x}", f"Y{y % 9}", f"X{x} Y{y}", f"N7 X{x}.5 Y{y % 5} ; a hole", f"x{x}y{y % 7}", "", "X1 Y1")
+        )
+        lines.append(place + rng.choice(("",) * 12 + (" Z-5", " L2", " F50", " G91", " R1", " G99", " M8", " A3")))
+    return [*lines, rng.choice(("G80", "G0", "X1", "G1 Z5"))]
+
+
 def program(rng: random.Random) -> bytes:
     lines = ["G21 G90 F500" if rng.random() < 0.8 else "G90"]
     for _ in range(rng.randint(1, 8)):
         lines += [plain_line(rng) for _ in range(rng.randint(1, 25))]
         if rng.random() < 0.2:
             lines += [rng.choice(("G1", "G0", "F200", "G1 F70", "G1 A3"))] * rng.randint(1, 5)
+        if rng.random() < 0.3:
+            lines += holes(rng)
         lines.append(rng.choice(FAULTS) if rng.random() < 0.15 else rng.choice(OTHERS))
     lines += ["M2", "O100", *(plain_line(rng) for _ in range(5)), "M99"]
     return "\n".join(lines).encode() + rng.choice((b"", b"\n"))
@@ -106,10 +123,10 @@ def test_the_fast_lane_runs_what_it_can(monkeypatch: pytest.MonkeyPatch) -> None
     assert ran == 4002
 
 
-def twin() -> Any:
+def twin(name: str = "plain") -> Any:
     """The kernel's own source, not compiled."""
-    path = Path(plain.__file__).with_name("plain.py")
-    spec = importlib.util.spec_from_file_location("plain_twin", path)
+    path = Path(plain.__file__).with_name(f"{name}.py")
+    spec = importlib.util.spec_from_file_location(f"{name}_twin", path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -153,6 +170,22 @@ def test_the_kernel_and_its_twin_agree(seed: int) -> None:
                 numbers[plain.LINE] += 1
         states.append(seen)
     assert states[0] == states[1]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_kernel_of_holes_and_its_twin_agree(seed: int) -> None:
+    rng = random.Random(seed)
+    pattern = array("d", [rng.uniform(-9, 9) for _ in range(holes_kernel.WIDTH * 3)])
+    places = array("d", [float(rng.randint(0, 3)) for _ in range(holes_kernel.WIDTH * 30)])
+    seen = []
+    for kernel in (holes_kernel, twin("holes")):
+        rows = bytearray(8 * len(pattern) * 30)
+        count = kernel.repeat(
+            places, memoryview(places).cast("B").cast("q"), 30, pattern, memoryview(pattern).cast("B").cast("q"), 2, 0,
+            memoryview(rows).cast("d"), memoryview(rows).cast("q"),
+        )  # fmt: skip
+        seen.append((count, bytes(rows)))
+    assert seen[0] == seen[1]
 
 
 @pytest.mark.parametrize("seed", range(20))

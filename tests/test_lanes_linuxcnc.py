@@ -16,7 +16,7 @@ from aircut.interpreter import lane as house
 from aircut.interpreter.linuxcnc import lane
 from aircut.interpreter.linuxcnc.interpreter import Interpreter
 from aircut.machine import built_in
-from test_lanes import plain_line, word
+from test_lanes import holes, plain_line, word
 
 OTHERS = (
     "G20", "G21", "G90", "G91", "G17", "G18", "G19", "G18.1", "G90.1", "G91.1", "G93", "G94 F300", "G95 S100 F0.2",
@@ -78,6 +78,8 @@ def program(rng: random.Random) -> bytes:
         lines += [line(rng) for _ in range(rng.randint(1, 25))]
         if rng.random() < 0.2:
             lines += [rng.choice(("G1", "G0", "F200", "G1 F70", "G1 A3"))] * rng.randint(1, 5)
+        if rng.random() < 0.3:
+            lines += [text for text in holes(rng) if "G88" not in text]
         fault = rng.random() < (0.0 if calm else 0.15)
         lines.append(rng.choice(FAULTS if fault else OTHERS[:-6] if calm else OTHERS))
         if rng.random() < 0.6:

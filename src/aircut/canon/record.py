@@ -69,6 +69,10 @@ class Events:
         wanted = {NUMBERS[name] for name in names}
         return (self[index] for index, number in enumerate(self.name) if number in wanted)
 
+    def since(self, index: int, first: int) -> list[tuple[int, int, tuple[Any, ...]]]:
+        """The events from an index on: of each the move, counted from `first`, the name's number, and the values."""
+        return [(self.at[i] - first, self.name[i], self.values[i]) for i in range(index, len(self))]
+
     def extend(self, other: Events) -> None:
         for name in self.__slots__:
             getattr(self, name).extend(getattr(other, name))
@@ -215,6 +219,19 @@ class Recorder:
         count = len(events) - before
         events.file.extend([self.file] * count)
         events.name.extend([NUMBERS["SET_FEED_RATE"]] * count)
+
+    def tell_pattern(self, pattern: list[tuple[int, int, tuple[Any, ...]]], first: int, size: int, lines: Any) -> None:
+        """The events of a pattern (see Events.since) at each of these lines, `size` moves apart, from move `first`."""
+        events, count = self.events, len(pattern)
+        if count:
+            for nth, line in enumerate(lines):
+                at = first + nth * size
+                events.at.extend([at + place for place, _, _ in pattern])
+                events.line.extend([line] * count)
+            repeated = len(lines)
+            events.file.extend([self.file] * (count * repeated))
+            events.name.extend([name for _, name, _ in pattern] * repeated)
+            events.values.extend([values for _, _, values in pattern] * repeated)
 
     def take(self) -> Chunk:
         """Hand out what has been written and start anew; what waits stays."""

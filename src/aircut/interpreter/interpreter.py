@@ -330,7 +330,7 @@ class Interpreter(Run):
         unit.seen[line:after] = b"\x01" * (after - line)
         self.line = after - 1
         row = self.lane.motions[self.lane.motion]
-        if row is not m.motion:
+        if row is not m.motion and not (m.motion and m.motion.cycle):
             self.set_mode(row)
         return after
 

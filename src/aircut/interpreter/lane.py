@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from aircut.canon import CHUNK
 from aircut.interpreter import tipping
+from aircut.interpreter.holes import Holes
 from aircut.interpreter.path import RECORDER
 from aircut.interpreter.table import AXES
 from aircut.interpreter.tipping import Tipping
@@ -37,6 +38,7 @@ class Lane:
         self.feed_places = array("q", [0] * (2 * FEW))
         self.motions = [m.dialect.codes[name.lower()] for name in MOTIONS]
         self.tipping = Tipping()
+        self.holes = Holes()
         m.out.room = kept
 
     def open(self, m: State) -> bool:
@@ -47,8 +49,14 @@ class Lane:
             and m.macro is None
             and not m.polar
             and not m.inverse_time
-            and m.motion in self.motions
+            and self.known(m)
         )
+
+    def known(self, m: State) -> bool:
+        """Whether the motion mode is one of the kernels'."""
+        if m.motion is not None and m.motion.cycle:
+            return m.cycle is not None and m.absolute and m.way is RECORDER and not m.compensating
+        return m.motion in self.motions
 
     def letters(self, m: State) -> int:
         """Axes that may be named, by bits; rotary ones only where nothing is particular about them."""
@@ -58,6 +66,9 @@ class Lane:
 
     def run(self, m: State, source: Source, line: int, end: int) -> int:
         """Run lines from `line` up to `end` as far as they go; returns the one to go on with."""
+        assert m.motion is not None
+        if m.motion.cycle:
+            return self.holes.run(self, m, source, line, end)
         control = tipping.alone(m)
         if control is not None:
             return self.tipping.run(self, m, control, source, line, end)
@@ -77,8 +88,7 @@ class Lane:
         """Tell the kernel where the state stands. box: lowest and highest places, six each."""
         numbers, reals = self.numbers, self.reals
         numbers[plain.LINE] = line
-        assert m.motion is not None
-        numbers[plain.MOTION] = self.motions.index(m.motion)
+        numbers[plain.MOTION] = self.motions.index(m.motion) if m.motion in self.motions else 0
         numbers[plain.ABSOLUTE] = m.absolute
         numbers[plain.ARC_ABSOLUTE] = m.arc_absolute
         numbers[plain.PLANE] = m.plane
@@ -111,6 +121,12 @@ class Lane:
         m.position = list(self.reals[plain.POSITION : plain.OFFSET])
         m.feed = self.reals[plain.FEED]
         m.line = m.out.line = after
+
+    def drilled(self, m: State, after: int) -> None:
+        """As settle, after holes of one cycle."""
+        cycle = m.cycle
+        self.settle(m, after)
+        m.cycle = cycle
 
     def tell(self, m: State, first: int, firsts: array[int] | None = None) -> None:
         """Tell the feeds met. first: the first move of the stretch. firsts: where rows became many: theirs."""

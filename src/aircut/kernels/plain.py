@@ -23,7 +23,8 @@ LINE, ROWS, FEEDS, MOTION = 0, 1, 2, 3
 # In only.
 ABSOLUTE, ARC_ABSOLUTE, PLANE, FLAGS, TOOL, FILE, AXES, RADIUS, ALONE, LONGEST = 4, 5, 6, 7, 8, 9, 10, 11, 12, 13
 PLACE = 14  # in and out: the byte at which the line starts
-NUMBERS = 15
+BARE = 15  # in only: axis words alone may stand
+NUMBERS = 16
 SETS, STAYS = 1, 2  # of ALONE
 # Places in `reals`: position, offset, low and high limits and shift are six each.
 POSITION, OFFSET, LOW, HIGH, UNIT, FEED, SAID, LEAST, ZERO, SHIFT = 0, 6, 12, 18, 24, 25, 26, 27, 28, 29
@@ -99,6 +100,7 @@ def run(
     said: cython.double = reals[SAID]
     zero: cython.double = reals[ZERO]
     longest: cython.Py_ssize_t = numbers[LONGEST]
+    barred: cython.uint = 0x0FC0 if numbers[BARE] else 0
     first: cython.int
     second: cython.int
     c: cython.int
@@ -228,7 +230,7 @@ def run(
             continue
 
         # What stands here must be a whole move, or a feed.
-        if seen & 0x3F & ~axes:
+        if seen & 0x3F & ~axes or seen & barred:
             break
         if seen & 0x3F == 0 and (seen & 0x3C0 or (seen & 2048 and (code > 1 or not alone))):
             break

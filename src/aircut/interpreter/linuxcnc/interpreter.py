@@ -174,8 +174,9 @@ class Interpreter(Run):
             text.slow[line] = 1
             return False
         text.ran[line:after] = b"\x01" * (after - line)
-        self.modal = self.lane.motions[self.lane.motion]
-        m.motion_name = self.modal.name.lower()
+        if not self.modal.cycle:
+            self.modal = self.lane.motions[self.lane.motion]
+            m.motion_name = self.modal.name.lower()
         self.line = after - 1
         self.next_line = after
         return True

@@ -25,7 +25,7 @@ class Lane(lane.Lane):
         """Whether plain motion means here what the kernel knows."""
         assert isinstance(m, State)
         return (
-            m.motion in self.motions
+            self.known(m)
             and m.way is RECORDER
             and m.feed_mode == 94
             and not m.stale
