@@ -46,11 +46,6 @@ MISSING_VALUE = Fault(
 )
 REPEATED_WORD = Fault("repeated-word", "two {word} words in one block")
 UNKNOWN_CODE = Fault("unknown-code", "{code} is not a code of this language")
-NOT_SUPPORTED_YET = Fault(
-    "not-supported-yet",
-    "{code} ({title}) is not supported yet",
-    "the language has this code, but this version of aircut cannot run it: what follows may be wrong",
-)
 UNSUPPORTED_CODE = Fault("unsupported-code", "the controller does not support {code}")
 MODAL_CONFLICT = Fault("modal-conflict", "{first} and {second} are of one modal group: {group}", "use two blocks")
 SOLE_CODE = Fault("sole-code", "{code} must be the only G or M code of its block", "{other} needs a block of its own")
