@@ -12,6 +12,7 @@ import ruckig
 
 from aircut.kernels import lookahead, pieces, scurve, thin
 from aircut.planner import Regime, limits, plan_moves
+from aircut.planner.joints import bent, raised, steady
 from planning import derivatives, machine, planned, toolpath
 
 V, A = 100.0, 500.0  # mm/s, mm/s²
@@ -80,11 +81,69 @@ def test_sampled_motion_keeps_the_limits(jerk):
     assert checked > 40
 
 
+@pytest.mark.parametrize("jerk", [0.0, 500.0, 5000.0, 100_000.0])
+def test_it_does_so_however_finely_it_is_sampled(jerk):
+    """At gentle corners too, where the controller's cycle lets velocity jump."""
+    on = machine(60 * V, A, jerk)
+    checked = 0
+    for seed in range(200, 230):
+        try:
+            made = planned(program(seed), on)
+        except AssertionError:
+            continue
+        if made.duration > 20.0:
+            continue
+        velocity, acceleration, hardest = derivatives(made, DT / 10)
+        assert (velocity <= V * 1.001).all(), (seed, velocity)
+        assert (acceleration <= A * 1.001).all(), (seed, acceleration)
+        if jerk:
+            assert (hardest <= jerk * 1.001 + 10.0).all(), (seed, hardest)  # 1e-12 mm of rounding is 10 mm/s³
+        checked += 1
+    assert checked > 5
+
+
+@pytest.mark.parametrize("jerk", [0.0, 5000.0])
+def test_gentle_corners_are_rounded_over_a_cycle(jerk):
+    """Sides of a polygon of 90: corners are passed as near as a cycle allows, and no farther off."""
+    angles = [math.tau * i / 90 for i in range(1, 10)]
+    text = "\n".join(f"G1 X{50 - 50 * math.cos(a):.6f} Y{50 * math.sin(a):.6f}" for a in angles)
+    made = planned(f"G21 G90 G61 F6000\n{text}\nM2", machine(60 * V, A, jerk))
+    away = np.abs(made.samples(made.times).position - made.toolpath.ends()).max()
+    bound = jerk * DT**3 / 20 if jerk else A * DT**2 / 16
+    assert bound / 3 < away < bound * 1.000001
+    _, acceleration, _ = derivatives(made, DT / 20)
+    assert (acceleration <= A * 1.001).all()
+    s = made.samples(np.arange(0, made.duration, DT / 7))
+    slope = np.gradient(s.position, s.time, axis=0, edge_order=2)
+    assert slope == pytest.approx(s.velocity, abs=A * DT)
+    assert np.abs(s.acceleration).max() <= A * 1.001
+
+
+@pytest.mark.parametrize("since", [steady, bent, raised])
+def test_spreading_a_jump_leaves_nothing_behind(since):
+    """The functions of `since` are each other's derivatives, but for the jump itself; and end in zeros."""
+    cycle, dt = 0.5, 1e-4
+    time = (np.arange(-12_000, 12_000) + 0.5) * dt
+    place, speed, slope = since(time, cycle)
+    for values in (place, speed, slope):
+        assert values[[0, -1]] == pytest.approx(0, abs=1e-12)
+    jumped = np.where(time > 0, 1.0, 0.0)
+    if since is raised:
+        assert np.cumsum(slope) * dt == pytest.approx(speed, abs=2e-4)
+        assert np.cumsum(speed) * dt == pytest.approx(place, abs=2e-4)
+        assert np.abs(np.diff(slope + jumped)).max() / dt <= 0.86 / cycle
+    else:
+        assert np.cumsum(slope) * dt - jumped == pytest.approx(speed, abs=3e-4)
+        assert np.cumsum(speed) * dt == pytest.approx(place, abs=3e-4)
+        assert np.abs(slope).max() <= 1 / cycle
+
+
 @pytest.mark.parametrize("jerk", [0.0, 5000.0])
 def test_every_move_is_followed_exactly_where_nothing_is_blended(jerk):
     """G61: each programmed end is passed, and the points between lie on the programmed line or circle."""
     made = planned(
-        "G21 G90 G61 F3000\nG1 X10 Y3\nX20 Y3.2\nG3 X30 Y13.2 J10\nG1 Y30 Z5 A40\nX0 Y0\nM2", machine(jerk=jerk)
+        "G21 G90 G61 F3000\nG1 X10 Y3\nX20 Y3.2\nG3 X30 Y13.2 J10\nG1 Y30 Z5 A40\nX0 Y0\nM2",
+        machine(jerk=jerk, cycle=0.0),
     )
     ends = made.toolpath.ends()
     assert made.samples(made.times).position == pytest.approx(ends, abs=1e-9)

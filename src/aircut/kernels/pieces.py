@@ -215,6 +215,16 @@ def arc(
 
 
 @cython.cfunc
+def taken(
+    speed: cython.double, jump: cython.double, bend: cython.double, accel: cython.double, cycle: cython.double
+) -> cython.double:
+    """Acceleration that an axis needs around a joint. jump: of its velocity, a second, for each unit of speed."""
+    beside: cython.double = speed + accel * cycle / 8.0  # half a cycle away
+    across: cython.double = bend * beside * beside
+    return jump * speed + sqrt(across * across + accel * accel / 16.0)
+
+
+@cython.cfunc
 @cython.boundscheck(False)
 @cython.wraparound(False)
 @cython.cdivision(True)
@@ -236,6 +246,13 @@ def kink(
     i: cython.int
     jump: cython.double
     most: cython.double
+    least: cython.double = 0.0
+    middle: cython.double = 0.0
+    bend: cython.double
+    for i in range(6):
+        least += bends[12 * before + 6 + i] * bends[12 * before + 6 + i]
+        middle += bends[12 * after + i] * bends[12 * after + i]
+    bend = sqrt(least if least > middle else middle)  # across any axis, as it turns about
     for i in range(6):
         jump = fabs(ways[12 * after + i] - ways[12 * before + 6 + i])
         if jump > 0.2 or (cycle == 0.0 and jump > 1e-9):  # a corner: nothing is gained by not stopping
@@ -247,6 +264,16 @@ def kink(
             most = share * cycle * cycle * limits[12 + i] / jump
             if most < speed:
                 speed = most
+            # What an arc needs of the acceleration, across the path and (a quarter) along it, must be left.
+            if bend > 0.0 and taken(speed, jump / cycle, bend, limits[6 + i], cycle) > limits[6 + i]:
+                least = 0.0
+                for _ in range(50):
+                    middle = (least + speed) / 2.0
+                    if taken(middle, jump / cycle, bend, limits[6 + i], cycle) > limits[6 + i]:
+                        speed = middle
+                    else:
+                        least = middle
+                speed = least
         if limits[12 + i] < 1e300:
             jump = fabs(bends[12 * after + i] - bends[12 * before + 6 + i])
             if jump * speed * speed > share * cycle * limits[12 + i]:

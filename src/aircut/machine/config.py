@@ -113,8 +113,8 @@ class Spindle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Motion(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How the controller moves. profile: auto is jerk-limited where an axis has a jerk.
 
-    cycle: seconds, the controller's period. A jump of velocity at a joint of the path counts as what it is
-    over one; with 0 nothing may jump.
+    cycle: seconds, the controller's period. A jump of velocity at a joint of the path is spread over one;
+    with 0 nothing may jump.
     """
 
     profile: Literal["auto", "trapezoidal", "jerk-limited"] = "auto"

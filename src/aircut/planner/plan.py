@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aircut.canon.toolpath import AXES
 from aircut.planner import ramps
+from aircut.planner.joints import Joints
 from aircut.planner.path import FILLET
 
 if TYPE_CHECKING:
@@ -116,6 +117,7 @@ class Plan:
         self.limits = limits
         self.until = until
         self.rows = rows
+        self._joints: Joints | None = None  # made when the motion is looked at
         self.ways = path.ways
         ended = np.zeros(len(path.toolpath) + 1)
         ended[path.move + 1] = until  # the last piece of a move wins
@@ -179,8 +181,15 @@ class Plan:
         slope = np.where((time < 0) | (time > self.duration), 0.0, slope)
         velocity = first * speed[:, None]
         acceleration = first * slope[:, None] + second * (speed**2)[:, None]
+        if self._joints is None:
+            self._joints = Joints(self)
+        aside, faster, harder = self._joints.spread(moving)
+        harder[(time < 0) | (time > self.duration)] = 0.0
         move = self.path.move[piece].astype(np.int64)
-        return Samples(time, place, velocity, acceleration, speed, move if self.rows is None else self.rows[move])
+        return Samples(
+            time, place + aside, velocity + faster, acceleration + harder, speed,
+            move if self.rows is None else self.rows[move],
+        )  # fmt: skip
 
     def piece_tops(self) -> Array:
         """Highest speed in each piece of the path, by its parameter, (pieces,)."""
