@@ -10,13 +10,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from aircut.canon import BY_HAND, PART, ROW, TIP, TOLD, Chunk
-from aircut.canon.record import Events
+from aircut.canon import BY_HAND, COMMANDS, PART, ROW, TIP, TOLD, Chunk
+from aircut.canon.record import NUMBERS, Events
 from aircut.export.listing import Listing
 from aircut.geometry.kinematics import Setup
 from aircut.kernels import printing, twin
 from aircut.source import Source
 
+FIRST = 1000  # index of the first row in its run
+NO_FEEDS = (array("q"), array("i"), array("H"), array("d"))
 KERNELS = (printing, twin("printing", "printing_uncompiled"))
 TEXT = Source("part", b"G0 X1\n  N10 G1\n/n7\nN\n\nN" + b"1" * 70 + b"\nN123456789X1\n")
 
@@ -53,20 +55,35 @@ def listing(count: int) -> Listing:
     return made
 
 
-def written(rows: bytes, made: Listing, kernel: Any, monkeypatch: pytest.MonkeyPatch) -> str:
+def told(feeds: list[tuple[int, int, float]], count: int, first: int) -> Events:
+    """Feeds before some of the rows, each with its line; one in three is another event."""
+    events = Events()
+    for index, (at, line, feed) in enumerate(sorted(feeds)):
+        events.at.append(first + min(at, count))
+        events.line.append(line)
+        events.file.append(0)
+        events.name.append(NUMBERS["SET_FEED_RATE" if index % 3 < 2 else "SET_G92_OFFSET"])
+        events.values.append((feed,) if index % 3 < 2 else (feed,) * len(COMMANDS["SET_G92_OFFSET"].fields))
+    return events
+
+
+def written(
+    rows: bytes, made: Listing, kernel: Any, monkeypatch: pytest.MonkeyPatch, events: Events | None = None
+) -> str:
     """What the kernel makes of rows, with the rows that it leaves out written by Python."""
     with monkeypatch.context() as patch:
         patch.setattr("aircut.export.listing.printing", kernel)
-        return "".join(made.write(Chunk(0, rows, Events())))
+        return "".join(made.write(Chunk(FIRST, rows, events or Events())))
 
 
-@settings(max_examples=300)
+@settings(max_examples=150)
 @given(
     moves(), st.sampled_from((0, 9, 99_998, 10**9)), st.sampled_from((1.0, 25.4)), st.lists(numbers, min_size=6,
     max_size=6), st.sampled_from((0.0, 0.3, math.pi / 2)),
+    st.lists(st.tuples(st.integers(0, 9), st.integers(0, len(TEXT)), numbers), max_size=7),
 )  # fmt: skip
 def test_rows_are_written_as_python_does(
-    rows: bytes, count: int, unit: float, work: list[float], rotation: float
+    rows: bytes, count: int, unit: float, work: list[float], rotation: float, feeds: list[tuple[int, int, float]]
 ) -> None:
     def fresh() -> Listing:
         made = listing(count)
@@ -74,15 +91,21 @@ def test_rows_are_written_as_python_does(
         return made
 
     made = fresh()
-    lines = [made.row(row) for row in ROW.iter_unpack(rows)]
+    events = told(feeds, len(rows) // ROW.size, FIRST)
+    waiting = list(events)
+    lines = []
+    for at, row in enumerate([*ROW.iter_unpack(rows), None], FIRST):
+        while waiting and waiting[0].at <= at:
+            lines += made.event(waiting.pop(0))
+        lines.append(made.row(row) if row else "")
     for kernel in KERNELS:
         other = fresh()
         with pytest.MonkeyPatch.context() as patch:
-            assert written(rows, other, kernel, patch) == "".join(lines)
+            assert written(rows, other, kernel, patch, events) == "".join(lines)
         assert other.count == made.count
 
 
-@settings(max_examples=1000)
+@settings(max_examples=400)
 @given(st.lists(numbers, min_size=6, max_size=6))
 def test_numbers_are_those_of_printf(values: list[float]) -> None:
     row = ROW.pack(*values, 0.0, 0.0, 0.0, 0, 0, 0, 0, 0, 0, 0)
@@ -99,10 +122,12 @@ def test_what_the_kernel_does_not_know_stops_it(kernel: Any, value: float) -> No
     good, bad = (ROW.pack(1.0, v, *(0.0,) * 7, 0, 0, 0, 0, 1, 0, 0) for v in (0.99995, value))
     rows = memoryview(good + bad + good)
     reals = array("d", [0.0] * 6 + [1.0, 0.0, 0.0, 1.0, 0.0, 0.0])
-    places = array("q", (0, 0, 0, 0, 3))
+    places = array("q", (0, 0, 0, 0, 3, 0, 0))
     out = bytearray(2 * printing.LINE)
-    kernel.moves(rows.cast("d"), rows.cast("q"), b"", array("q"), places, reals, out, printing.HEADS, printing.PAIRS)
-    assert places.tolist() == [1, 75, 1, 0, 3]
+    kernel.moves(
+        rows.cast("d"), rows.cast("q"), b"", array("q"), places, reals, *NO_FEEDS, out, printing.HEADS, printing.PAIRS
+    )
+    assert places.tolist() == [1, 75, 1, 0, 3, 0, 0]
     assert out[:75] == b"    1 N..... STRAIGHT_FEED(1.0000, 1.0000, 0.0000, 0.0000, 0.0000, 0.0000)\n"
 
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 from aircut.canon import BY_HAND, COMMANDS, PART, ROW, TIP, TOLD, Chunk, Event, Kind
 from aircut.canon.commands import WRITTEN
+from aircut.canon.record import NUMBERS, Events
 from aircut.geometry.arcs import PLANE_AXES
 from aircut.geometry.kinematics import Setup, forward
 from aircut.kernels import printing
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from aircut.source import Source
 
 INCH = 25.4  # mm
+OTHERS = re.compile(b"[^" + re.escape(bytes((NUMBERS["SET_FEED_RATE"],))) + b"]", re.DOTALL)  # than feeds
 WIDTH = ROW.size // 8
 BUFFER = 1 << 20  # bytes of text that are made at a time
 NO_NUMBER = "N..... "
@@ -103,40 +105,63 @@ class Listing:
 
     def write(self, chunk: Chunk) -> Iterator[str]:
         """The text of a chunk, in pieces that end with a line."""
-        rows = memoryview(chunk.rows)
-        at = 0
-        for event in chunk.events:
-            if event.at - chunk.first > at:
-                yield from self.moves(rows, at, event.at - chunk.first)
-                at = event.at - chunk.first
-            yield from self.event(event)
-        yield from self.moves(rows, at, len(rows) // ROW.size)
+        rows, events = memoryview(chunk.rows), chunk.events
+        at = done = 0
+        for other in OTHERS.finditer(events.name.tobytes()):
+            index = other.start()
+            place = events.at[index] - chunk.first
+            yield from self.moves(rows, at, place, chunk.first, events, done, index)
+            at, done = max(at, place), index + 1
+            yield from self.event(events[index])
+        yield from self.moves(rows, at, len(rows) // ROW.size, chunk.first, events, done, len(events))
 
-    def moves(self, rows: memoryview, first: int, last: int) -> Iterator[str]:
-        """The text of the rows from `first` to before `last`."""
+    def moves(
+        self, rows: memoryview, first: int, last: int, before: int, events: Events, told: int, tellable: int
+    ) -> Iterator[str]:
+        """The text of the rows from `first` to before `last`, and of the events from `told` to before `tellable`.
+
+        These are all feeds. before: index in the run of the first of all rows.
+        """
         if self.auxiliary is not None:
-            yield from filter(None, map(self.row, ROW.iter_unpack(rows[first * ROW.size : last * ROW.size])))
+            for event in (events[index] for index in range(told, tellable)):
+                yield from self.simply(rows, first, event.at - before)
+                first = max(first, event.at - before)
+                yield from self.event(event)
+            yield from self.simply(rows, first, last)
             return
         reals = array("d", [w + s for w, s in zip(self.work, self.shift, strict=True)])
         turned = float(self.rotation != 0.0)
         reals.extend((self.unit, self.work[0], self.work[1], cos(self.rotation), sin(self.rotation), turned))
         doubles, marks = rows.cast("d"), rows.cast("q")
-        while first < last:
-            file = marks[first * WIDTH + 10] >> 16 & 0xFFFF
+        at, lines, files = events.at[told:tellable], events.line[told:tellable], events.file[told:tellable]
+        feeds = array("d", [values[0] for values in events.values[told:tellable]])
+        told = 0
+        while first < last or told < len(feeds):
+            telling = told < len(feeds) and (at[told] - before <= first or first >= last)
+            file = files[told] if telling else marks[first * WIDTH + 10] >> 16 & 0xFFFF
             source = self.text(file)
-            numbers = array("q", (first, 0, self.count, file, last))
+            numbers = array("q", (first, 0, self.count, file, last, told, before))
             data = source.data if source.numbered else b""
             printing.moves(
-                doubles, marks, data, source.counts, numbers, reals, self.buffer, printing.HEADS, printing.PAIRS
-            )
+                doubles, marks, data, source.counts, numbers, reals, at, lines, files, feeds, self.buffer,
+                printing.HEADS, printing.PAIRS,
+            )  # fmt: skip
             self.count = numbers[printing.COUNT]
             if numbers[printing.USED]:
                 yield self.buffer[: numbers[printing.USED]].decode("ascii")
-            if numbers[printing.ROW] == first:
+            stays = numbers[printing.ROW] == first and numbers[printing.TOLD] == told
+            first, told = numbers[printing.ROW], numbers[printing.TOLD]
+            if stays and telling:
+                text = "SET_FEED_RATE(%.4f)" % (feeds[told] / self.unit)
+                yield self.line(file, lines[told], text)
+                told += 1
+            elif stays:
                 yield self.row(ROW.unpack_from(rows, first * ROW.size))
                 first += 1
-            else:
-                first = numbers[printing.ROW]
+
+    def simply(self, rows: memoryview, first: int, last: int) -> Iterator[str]:
+        """The text of rows, without the kernel."""
+        return filter(None, map(self.row, ROW.iter_unpack(rows[first * ROW.size : max(first, last) * ROW.size])))
 
     def row(self, row: tuple[float, ...]) -> str:
         """The line of one row; empty where it has none."""

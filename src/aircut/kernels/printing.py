@@ -27,7 +27,7 @@ MASK, HALF = 2**49 - 1, 2**48
 #: Heads of the lines by kind; each has 20 bytes, the last of them its length.
 HEADS = b"".join(
     name.ljust(19) + bytes((len(name),))
-    for name in (b"STRAIGHT_TRAVERSE(", b"STRAIGHT_FEED(", b"ARC_FEED(", b"STRAIGHT_PROBE(")
+    for name in (b"STRAIGHT_TRAVERSE(", b"STRAIGHT_FEED(", b"ARC_FEED(", b"STRAIGHT_PROBE(", b"SET_FEED_RATE(")
 )
 HEAD = 20
 PAIRS = b"".join(b"%02d" % number for number in range(100))
@@ -36,7 +36,9 @@ PAIRS = b"".join(b"%02d" % number for number in range(100))
 TIP, UNLISTED = 16, 8 | 32 | 64
 # Places in `numbers`, in and out: row to go on with, bytes written, lines counted; in only: file, rows.
 ROW, USED, COUNT, FILE, ROWS = 0, 1, 2, 3, 4
-NUMBERS = 5
+# In and out: feed to go on with; in only: the index of row 0 as feeds count them.
+TOLD, FIRST = 5, 6
+NUMBERS = 7
 # Places in `reals`: offset of the six axes, mm a unit, center, cosine and sine of the rotation.
 OFFSET, UNIT, CENTER, COSINE, SINE, TURNED = 0, 6, 7, 9, 10, 11
 REALS = 12
@@ -52,16 +54,21 @@ def moves(
     counts: cython.const[cython.longlong][::1],
     numbers: cython.longlong[::1],
     reals: cython.double[::1],
+    feed_at: cython.const[cython.longlong][::1],
+    feed_lines: cython.const[cython.int][::1],
+    feed_files: cython.const[cython.ushort][::1],
+    feeds: cython.const[cython.double][::1],
     out: cython.uchar[::1],
     heads: cython.const[cython.uchar][::1],
     pairs: cython.const[cython.uchar][::1],
 ):
-    """Write rows from numbers[ROW] up to numbers[ROWS], as long as there is room for a line in `out`.
+    """Write rows from numbers[ROW] up to numbers[ROWS], and feeds, as long as there is room for a line in `out`.
 
     rows, marks: the same memory, as doubles and as integers: packed rows. data, counts: the text of
     file numbers[FILE], and the line feeds before each of its blocks; no text where no line has a
     number. reals: see the places above; TURNED is 0.0 where
-    there is no rotation. heads, pairs: HEADS and PAIRS.
+    there is no rotation. feed_at, feed_lines, feed_files, feeds: of each feed the row before which it comes, by its
+    index in the run, its line and file, and the feed, mm/min. heads, pairs: HEADS and PAIRS.
     """
     row: cython.Py_ssize_t = numbers[ROW]
     last: cython.Py_ssize_t = numbers[ROWS]
@@ -89,8 +96,12 @@ def moves(
     center_y: cython.double = reals[CENTER + 1]
     cosine: cython.double = reals[COSINE]
     sine: cython.double = reals[SINE]
-    base: cython.Py_ssize_t
+    base: cython.Py_ssize_t = 0
     begin: cython.Py_ssize_t
+    told: cython.Py_ssize_t = numbers[TOLD]
+    tellable: cython.Py_ssize_t = len(feeds)
+    before: cython.longlong = numbers[FIRST]
+    telling: cython.bint
     place: cython.Py_ssize_t
     end: cython.Py_ssize_t
     i: cython.int
@@ -99,11 +110,11 @@ def moves(
     third: cython.int
     amount: cython.int
     kind: cython.int
-    plane: cython.int
+    plane: cython.int = 0
     turns: cython.int
     fine: cython.bint
     mark: cython.longlong
-    tail: cython.longlong
+    tail: cython.longlong = 0
     line: cython.longlong
     number: cython.longlong
     whole: cython.longlong
@@ -124,18 +135,27 @@ def moves(
     for i in range(6):
         offset[i] = reals[OFFSET + i]
 
-    while row < last and at <= room:
-        base = row * width
-        tail = marks[base + 10]
-        mark = tail >> 48 & 0xFFFF
-        if mark & unlisted:
-            row += 1
-            continue
-        line = marks[base + 9] & 0xFFFFFFFF
-        if mark & tip or (line and (tail >> 16 & 0xFFFF) != file):
-            break
-        kind = tail >> 32 & 0xFF
-        plane = tail >> 40 & 0xFF
+    while at <= room:
+        telling = told < tellable and (feed_at[told] - before <= row or row >= last)
+        if telling:
+            line = feed_lines[told]
+            if line and feed_files[told] != file:
+                break
+            kind = 4
+        else:
+            if row >= last:
+                break
+            base = row * width
+            tail = marks[base + 10]
+            mark = tail >> 48 & 0xFFFF
+            if mark & unlisted:
+                row += 1
+                continue
+            line = marks[base + 9] & 0xFFFFFFFF
+            if mark & tip or (line and (tail >> 16 & 0xFFFF) != file):
+                break
+            kind = tail >> 32 & 0xFF
+            plane = tail >> 40 & 0xFF
         begin = at
 
         # The count, in five places or more.
@@ -214,14 +234,18 @@ def moves(
         for i in range(heads[kind * head + head - 1]):
             out[at + i] = heads[kind * head + i]
         at += heads[kind * head + head - 1]
-        for i in range(6):
-            values[i] = rows[base + i]
-        if turned:
+        amount = 6
+        if telling:
+            amount = 1
+            values[0] = feeds[told] / unit
+        else:
+            for i in range(6):
+                values[i] = rows[base + i]
+        if turned and not telling:
             u = values[0] - center_x
             v = values[1] - center_y
             values[0] = u * cosine + v * sine + center_x
             values[1] = v * cosine - u * sine + center_y
-        amount = 6
         turns = 0
         if kind == 2:
             amount = 8
@@ -256,7 +280,7 @@ def moves(
             values[4] = value
             values[2] = (u - offset[first]) / unit
             values[3] = (v - offset[second]) / unit
-        else:
+        elif not telling:
             for i in range(3):
                 values[i] = (values[i] - offset[i]) / unit
             for i in range(3, 6):
@@ -350,8 +374,12 @@ def moves(
         out[at] = 41
         out[at + 1] = 10
         at += 2
-        row += 1
+        if telling:
+            told += 1
+        else:
+            row += 1
 
     numbers[ROW] = row
     numbers[USED] = at
+    numbers[TOLD] = told
     numbers[COUNT] = count
