@@ -93,12 +93,10 @@ def beside(contour: Sequence[Element], right: float) -> list[Element]:
         path = offset(element, -right)
         if path is None:
             raise Turning("an arc is too small for its allowance")
-        if before is not None and (
-            before.center is element.center is None or distance(moved[-1].end, path.start) > SAME
-        ):
+        apart = 0.0 if before is None else distance(moved[-1].end, path.start)
+        if before is not None and (apart > SAME or before.center is element.center is None):
             a, b = heading(before, before.end), heading(element, element.start)
-            apart = distance(moved[-1].end, path.start) > GAP
-            if (a[0] * b[1] - a[1] * b[0]) * right > 0.0 and apart:  # turns away from the allowance's side
+            if (a[0] * b[1] - a[1] * b[0]) * right > 0.0 and apart > GAP:  # turns away from the allowance's side
                 moved.append(Element(moved[-1].end, path.start, element.start, 1 if right > 0.0 else -1))
             else:
                 corner = meeting(moved[-1], path)
@@ -167,6 +165,8 @@ def falls(element: Element) -> bool:
 
 def at_level(element: Element, level: float, *, beyond: float = -1.0) -> Point | None:
     """The first point of the element at a height, farther along it than `beyond`; its end counts for arcs alone."""
+    if distance(element.start, element.end) < SAME:
+        return element.start if abs(element.start[1] - level) < SAME and beyond < 0.0 else None
     if element.center is None:
         low, high = sorted((element.start[1], element.end[1]))
         if not low - SAME <= level <= high + SAME:

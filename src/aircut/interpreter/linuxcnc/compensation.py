@@ -109,7 +109,7 @@ def dynamic(side: int, m: State, w: Words) -> None:
     if "d" not in w:
         raise Refusal(F.MISSING_WORD, code="G41.1", word="D", meaning="the diameter")
     orientation = whole("l", w.get("l", 0.0))
-    if orientation and m.plane != 1:
+    if "l" in w and m.plane != 1:
         raise Refusal(F.COMPENSATION_L, "l")
     if not 0 <= orientation <= ORIENTATIONS:
         raise Refusal(F.BAD_VALUE, "l", word="L", value=orientation, wanted="an orientation, 0 to 9")

@@ -11,6 +11,7 @@ from math import hypot, radians, tan
 from aircut.canon import TOLD
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.interpreter.linuxcnc.modes import spindle_of
 from aircut.interpreter.linuxcnc.motion import FEED, TRAVERSE, go, goal, wrong
 from aircut.interpreter.linuxcnc.state import State
 from aircut.interpreter.table import Code, Group, Order, Words
@@ -71,11 +72,11 @@ def thread(m: State, w: Words) -> None:
     half = 2.0 if m.diameter else 1.0
     pitch = m.length(w, "p")
     peak, first, full = (m.length(w, letter) / half for letter in "ijk")
-    degression, springs = w.get("r", 1.0), int(w.get("h", 0.0))
+    degression, springs = max(w.get("r", 1.0), 1.0), int(w.get("h", 0.0))
     slant = tan(radians(w.get("q", 0.0)))
     taper = m.length(w, "e")
-    ends = int(w.get("l", 0.0)) if taper else 0
-    check_thread(w, first, full, degression, int(w.get("l", 0.0)), taper)
+    ends = int(w.get("l", 0.0)) & (ENTRY | EXIT) if taper > 0.0 else 0
+    check_thread(m, w, first, full)
     peak = abs(peak)
     finish = goal(m, w)
     end = finish[2]
@@ -92,16 +93,16 @@ def thread(m: State, w: Words) -> None:
     go(m, TRAVERSE, finish)
 
 
-def check_thread(w: Words, first: float, full: float, degression: float, ends: int, taper: float) -> None:
+def check_thread(m: State, w: Words, first: float, full: float) -> None:
     """Raises Refusal."""
+    spindle_of(m, w)
+    for letter in "abc":
+        if letter in w and goal(m, w)["abc".index(letter) + 3] != m.position["abc".index(letter) + 3]:
+            raise Refusal(F.CYCLE_ROTARY, letter, code="G76", axis=letter.upper())
+    if w["i"] == 0.0:
+        raise Refusal(F.BAD_VALUE, "i", word="I", value=0.0, wanted="the way to the thread's peak is not 0")
     if first <= 0.0 or full <= 0.0 or first >= full:
         raise Refusal(F.BAD_VALUE, "k", word="K", value=w["k"], wanted="the full depth, above J, which is above 0")
-    if degression < 1.0:
-        raise Refusal(F.BAD_VALUE, "r", word="R", value=degression, wanted="1 at least")
-    if not 0 <= ends <= ENTRY | EXIT:
-        raise Refusal(F.BAD_VALUE, "l", word="L", value=ends, wanted="0 to 3")
-    if ends and taper < 0.0:
-        raise Refusal(F.MISSING_WORD, code="G76 with L", word="E", meaning="the taper's length")
 
 
 class Pass:
@@ -168,6 +169,6 @@ CODES = (
         needs_axes=True,
         check=check_synchronized,
     ),
-    follow("G33.1", "Rigid tapping", rigid_tap, takes="k$", needs="k", needs_axes=True, check=check_synchronized),
+    follow("G33.1", "Rigid tapping", rigid_tap, takes="ki$", needs="k", needs_axes=True, check=check_synchronized),
     follow("G76", "Threading cycle", thread, takes="pijkrqhel$", needs="pijk", needs_axes=True),
 )
