@@ -127,6 +127,16 @@ CHANGES = [
     )
 ]  # fmt: skip
 CHANGES += [
+    (section("RS274NGC", "RETAIN_G43=1"), ngc(*lines))
+    for lines in (
+        ["N1 T1 M6", "N2 G43", "N3 G0 X1", "N4 G43 H2", "N5 (msg,a)", "N6 #1=2", "N7", "N8 G49", "N9 G0 X1"],
+        ["N1 G43 H1", "N2 T2 M6", "#1=2", "", "(c)", "o1 if [1]", "o1 endif", "N5 G4 P0 G49", "N6 G43.2 H1", "N7 G20"],
+        ["N1 G43 H1", "N2 T2", "N3 M61 Q2", "N4 G0 X1", "N5 G43 H1", "N6 G0 X2", "N7 T1 M6", "N8 G0 X1 G43 H2"],
+        ["N1 G43 H1", "N2 G43.1 Z3", "N3 M3 S10", "N4 M8", "N5 T0 M6", "G0 X1"],
+        ["T1 M6", "G43", "G41 D1", "F10 G1 X50"],
+    )
+]
+CHANGES += [
     (section("EMCIO", f"RANDOM_TOOLCHANGER={value}"),
      ngc("T1 M6", "T2 M6", "(debug,#5400 #5403)", "G43", "M61 Q3", "T0", "T2 M6", "G10 L1 P2 Z1", "G43 H1", "T0 M6"))
     for value in (0, 1)
@@ -252,6 +262,7 @@ OPTIONS = [
     ("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_MM=0.002"),
     ("RS274NGC", "OWORD_NARGS=1"),
     ("RS274NGC", "DISABLE_G92_PERSISTENCE=1"),
+    ("RS274NGC", "RETAIN_G43=1"),
 ]
 #: All topics but splines, after which the position that a probe takes over is not the oracle's, and compensation.
 TOPICS = "straight,arc,polar,mode,offset,setting,auxiliary,tool,comment,home,probe,show,flow,call,saved,cycle,thread"
@@ -284,8 +295,7 @@ def test_random_programs_under_random_files(tmp_path: Path) -> None:
         ("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_MM=0.0009", "MM is 0.001 to 0.02828427"),
         ("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_MM=0.0283", "MM is 0.001 to 0.02828427"),
         ("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_INCH=nan", "INCH is 4e-05 to 0.002828427"),
-        ("RS274NGC", "REMAP=M400 ngc=x", "REMAP and RETAIN_G43 cannot be carried out"),
-        ("RS274NGC", "RETAIN_G43=1", "REMAP and RETAIN_G43 cannot be carried out"),
+        ("RS274NGC", "REMAP=M400 ngc=x", "REMAP cannot be carried out"),
         ("TRAJ", "SPINDLES=2", "SPINDLES is 1"),
     ],
 )

@@ -45,7 +45,9 @@ class Ini:
         joints = {i: self.text(f"AXIS_{a}", "LOCKING_INDEXER_JOINT") for i, a in enumerate("ABC", 3)}
         self.indexers = frozenset(i for i, joint in joints.items() if joint and not joint.startswith("-"))
         usual = all(self.limit(unit) == high for unit, (_, high) in TOLERANCES.items())
-        self.plain = usual and not (self.wrapped or self.indexers)  # moves mean what they do without the file
+        self.keeps_length = self.flag("RS274NGC", "RETAIN_G43")
+        #: Moves mean what they do without the file.
+        self.plain = usual and not (self.wrapped or self.indexers or self.keeps_length)
         self.spindle_on = self.flag("EMCIO", "TOOL_CHANGE_WITH_SPINDLE_ON")
         self.quill_up = self.flag("EMCIO", "TOOL_CHANGE_QUILL_UP")
         self.at_g30 = self.flag("EMCIO", "TOOL_CHANGE_AT_G30")
@@ -53,8 +55,8 @@ class Ini:
         self.counts_arguments = self.whole("RS274NGC", "OWORD_NARGS", 0) == 1
         self.no_fanuc = self.flag("RS274NGC", "DISABLE_FANUC_STYLE_SUB")
         self.forgets_shift = self.flag("RS274NGC", "DISABLE_G92_PERSISTENCE")
-        if ("RS274NGC", "REMAP") in self.values or self.flag("RS274NGC", "RETAIN_G43"):
-            raise MachineError(f"{path}: [RS274NGC]REMAP and RETAIN_G43 cannot be carried out in this version")
+        if ("RS274NGC", "REMAP") in self.values:
+            raise MachineError(f"{path}: [RS274NGC]REMAP cannot be carried out in this version")
 
     @property
     def folders(self) -> list[Path]:

@@ -24,6 +24,7 @@ from aircut.interpreter.linuxcnc.lane import Lane
 from aircut.interpreter.linuxcnc.shapes import Shape, shape_of
 from aircut.interpreter.linuxcnc.state import FAULTS, NINE, State
 from aircut.interpreter.linuxcnc.text import LONGEST, check, too_long
+from aircut.interpreter.linuxcnc.tooling import retained
 from aircut.interpreter.requests import Request
 from aircut.interpreter.running import Log, Run, Settings, Stopped
 from aircut.interpreter.table import Dialect, Group
@@ -210,7 +211,7 @@ class Interpreter(Run):
     def plain(self, text: Text) -> bool:
         """Run a plain line; False where it must be read character by character. Raises Refusal."""
         known = text.words_of(self.line, self.repeated > 0 or bool(self.flow.stack))
-        if known is None:
+        if known is None or self.state.ini.keeps_length:
             return False
         bare, values = known
         if bare not in self.shapes:
@@ -291,6 +292,8 @@ class Interpreter(Run):
             except Refusal as refusal:
                 refusal.where = (line.code.rindex(COMMENT), len(line.code))
                 raise
+        if m.ini.keeps_length and any(m.tool_offset):
+            steps = Steps(retained(steps.codes if steps else ()), None)
         if steps is not None:
             self.perform(steps, words)
 

@@ -5,6 +5,7 @@ Sources: 001; the canonical listing, section 10.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 
 from aircut.diagnostics import Refusal
@@ -145,5 +146,24 @@ CODES = (
     length("G43.2", "Tool length added", added_length, axes=True, takes="h"),
     length("G49", "No tool length", no_length),
 )
+
+
+def put_again(m: State, w: Words) -> None:
+    """What RETAIN_G43 does beside a tool change: the length of the tool in the spindle."""
+    tool_length(m, {})
+
+
+LENGTH = next(row for row in CODES if row.name == "G43")
+AGAIN = Code("G43", "Tool length, again", put_again, Group.TOOL_LENGTH, Order.TOOL_CHANGE)
+
+
+def retained(codes: Sequence[Code]) -> tuple[Code, ...]:
+    """The codes of a block under [RS274NGC]RETAIN_G43 while a length is in force.
+
+    Every block puts it again, twice, and whatever code of its group the block has is taken for G43.
+    """
+    rows = [row for row in codes if not row.group & Group.TOOL_LENGTH]
+    return tuple(sorted([*rows, AGAIN, LENGTH], key=lambda row: row.order))
+
 
 ITEMS = (Code("T", "Tool that the next change loads", select_tool, Group(0), Order.TOOL),)
