@@ -283,10 +283,10 @@ stopping = partial(Code, group=Group.STOP, order=Order.STOP)
 CODES = (
     Code("G93", "Inverse time feed", partial(set_feed_mode, 93), Group.FEED_MODE, Order.FEED_MODE),
     Code("G94", "Units a minute", partial(set_feed_mode, 94), Group.FEED_MODE, Order.FEED_MODE),
-    Code("G95", "Units a revolution", partial(set_feed_mode, 95), Group.FEED_MODE, Order.FEED_MODE, takes="$"),
+    Code("G95", "Units a revolution", partial(set_feed_mode, 95), Group.FEED_MODE, Order.FEED_MODE),
     Code("G96", "Constant surface speed", constant_surface, Group.SPINDLE_MODE, Order.SPINDLE_MODE,
          takes="d$", needs="s"),
-    Code("G97", "Constant revolutions", constant_revolutions, Group.SPINDLE_MODE, Order.SPINDLE_MODE, takes="$"),
+    Code("G97", "Constant revolutions", constant_revolutions, Group.SPINDLE_MODE, Order.SPINDLE_MODE),
     *(plane(f"G{n / 10:g}", "Plane", partial(set_plane, n)) for n in (170, 180, 190, 171, 181, 191)),
     Code("G20", "Inches", partial(set_units, INCH), Group.UNITS, Order.UNITS),
     Code("G21", "Millimeters", partial(set_units, 1.0), Group.UNITS, Order.UNITS),

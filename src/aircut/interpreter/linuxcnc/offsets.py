@@ -48,6 +48,8 @@ def select(system: int, m: State, w: Words) -> None:
     m.system = system
     m.numbered[SYSTEM] = system + 1.0
     m.load_system()
+    if m.numbered[G92]:  # the position reads by G92's parameters, even where the program has set them since
+        m.position = [p + s - n for p, s, n in zip(m.position, m.shift, m.stored(G92 + 1), strict=True)]
     tell_system(m)
     tell_shift(m)
     tell_rotation(m)
@@ -93,8 +95,9 @@ def put_shift(m: State, shift: list[float]) -> None:
 
 
 def clear_shift(forget: bool, m: State, w: Words) -> None:
-    """G92.1 (forgets the offset), G92.2. Raises Refusal."""
-    bar_shift(m)
+    """G92.1 (forgets the offset), G92.2. While compensation is on LinuxCNC passes them over."""
+    if m.cutter:
+        return
     m.set_shift([0.0] * 9)
     tell_shift(m)
     m.numbered[G92] = 0.0
@@ -103,8 +106,9 @@ def clear_shift(forget: bool, m: State, w: Words) -> None:
 
 
 def restore_shift(m: State, w: Words) -> None:
-    """G92.3. Raises Refusal."""
-    bar_shift(m)
+    """G92.3. While compensation is on LinuxCNC passes it over."""
+    if m.cutter:
+        return
     m.set_shift(m.stored(G92 + 1))
     tell_shift(m)
     m.numbered[G92] = 1.0

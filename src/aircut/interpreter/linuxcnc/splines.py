@@ -93,8 +93,8 @@ def quadratic(m: State, w: Words) -> None:
 def collect(m: State, w: Words) -> None:
     """G5.2: a control point and its weight. Raises Refusal.
 
-    X and Y are numbers of the program, absolute under G91 too, and read in the unit of the G5.3; the
-    other axes are passed over. Points before another motion are forgotten, but only once the checks are done.
+    X and Y are read in the unit of the G5.3, under G91 from the start of the spline; the other axes are
+    passed over. Points before another motion are forgotten, but only once the checks are done.
     """
     named = "x" in w or "y" in w
     if named and not ("x" in w and "y" in w):
@@ -111,7 +111,8 @@ def collect(m: State, w: Words) -> None:
         m.spline = [(m.position[0] / m.unit, m.position[1] / m.unit, 1.0 if named else weight)]
     m.spline_order = max(LEAST_ORDER, int(w.get("l", m.spline_order)))
     if named:
-        m.spline.append((w["x"] / (2.0 if m.diameter else 1.0), w["y"], weight))
+        place = goal(m, w)
+        m.spline.append((place[0] / m.unit, place[1] / m.unit, weight))
 
 
 def run_collected(m: State, w: Words) -> None:
