@@ -57,10 +57,13 @@ def modes(m: State) -> Modes | None:
         or m.motion is not m.modal.get(Group.MOTION)
     ):  # fmt: skip
         return None
-    place = zip(m.position, m.box[::2], m.box[1::2], strict=True)
-    if not all(low <= value <= high for value, low, high in place):
+    x, y, z, a, b, c = m.position
+    lx, hx, ly, hy, lz, hz, la, ha, lb, hb, lc, hc = m.box
+    if not (lx <= x <= hx and ly <= y <= hy and lz <= z <= hz and la <= a <= ha and lb <= b <= hb and lc <= c <= hc):
         return None
-    box = tuple(min(max(limit, -FAR), FAR) for limit in m.box[:6])
+    box = m.box
+    if lx < -FAR or hx > FAR or ly < -FAR or hy > FAR or lz < -FAR or hz > FAR:
+        box = tuple(min(max(limit, -FAR), FAR) for limit in box)
     return Modes(m.absolute, m.unit, m.feed, m.tool, m.plane, m.flags, box, tuple(m.offset))
 
 
@@ -289,12 +292,13 @@ class Weaver:
             f"run.perform(unit, {at}, s_{at}, ({values}))",
             "acting = False",
             f"if run.talk is not None or m.transfer is not None: return {at + 1}, True",
-            "M = modes(m)",
+            "M = asked",
         )
         letters, codes = {word.letter for word in words}, set(statement.codes)
         alone = not block.settings and not statement.comment  # the line can be given back
         if alone and letters and letters <= set(LINEAR) and codes <= set(STRAIGHT) and len(codes) < 2:
             code = statement.codes[0] if codes else ""
+            self.put(depth, "if M is asked: M = modes(m)")
             self.put(depth, f"if M is None or not (m.motion is g0 or m.motion is g1 or {bool(code)}):")
             self.put(depth + 1, *carry)
             self.put(depth, "else:")
@@ -334,7 +338,7 @@ class Weaver:
             "    L, V, S, N = m.locals, m.numbered, m.scope, m.names",
             "    g0, g1 = run.lane.motions[:2]",
             f"    unseen = seen.find(0, {first}, {end}) >= 0",
-            "    M = modes(m)",
+            "    M = asked",
             "    acting = False",
             "    try:",
         ]
@@ -346,7 +350,14 @@ class Weaver:
             "        m.line = out.line = line + 1",
             "        raise",
         ]
-        space = {**ENVIRONMENT, **self.space, "modes": modes, "pack": ROW.pack, "EVALUATION": EVALUATION}
+        space = {
+            **ENVIRONMENT,
+            **self.space,
+            "modes": modes,
+            "asked": object(),
+            "pack": ROW.pack,
+            "EVALUATION": EVALUATION,
+        }
         exec(compile("\n".join([*head, *self.lines, *tail]), "<loop>", "exec"), space)
         woven: Loom = space["woven"]
         return woven
