@@ -25,7 +25,7 @@ def load(name: str) -> Dialect:
 
 def machine(dialect: Dialect, axes: str = "") -> Machine:
     """The machine that serves when none is given. axes: its letters, if not the dialect's. Raises MachineError."""
-    made = built_in(axes or dialect.axes, dialect.letters)
+    made = built_in(axes or dialect.axes, dialect.letters, dialect.reach)
     if dialect.tools:
         made.tools = {tool.id: tool for tool in dialect.tools}
     return made

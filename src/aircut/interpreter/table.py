@@ -194,6 +194,7 @@ class Dialect(NamedTuple):
     cutter: CutterRules = CutterRules()
     letters: str = "xyzabc"  # of the axes that a machine may have
     axes: str = "XYZ"  # of the machine that serves when none is given
+    reach: float = 10_000.0  # of its linear axes to either side, mm
     takes_ini: bool = False  # LinuxCNC's configuration moves its interpreter
     table_unit: float = 1.0  # mm in a unit of LinuxCNC's tool table, which does not name its own
     parameters: range | None = None  # that a parameter file may hold, if not the machine's own

@@ -24,7 +24,7 @@ AXES = "xyzabc"  # programmable
 LINEAR = "xyz"
 ROTARY = "abc"
 AUXILIARY = "uvw"  # configured, read by programs, never moved by them (AMB-VAR-17)
-UNBOUNDED = 1e9  # degrees, the limits of a rotary axis that is given none
+UNBOUNDED = 1e9  # mm or degrees, the limit of an axis that has none
 
 AxisType = Literal["disabled", "linear", "rotary_free", "rotary_head", "rotary_table", "gantry_1", "gantry_2"]
 #: Source: 004 section 2.2.3; model 4 is the "Tilting Spindle AC" of 000 (AMB-NAM-11).
@@ -48,6 +48,8 @@ Positive = Annotated[float, Meta(gt=0.0, le=LARGEST)]
 NotNegative = Annotated[float, Meta(ge=0.0, le=LARGEST)]
 Count = Annotated[int, Meta(ge=0)]
 
+REACH = 10_000.0  # mm that a linear axis may go to either side, if nothing else is said
+
 
 class MachineError(Exception):
     """A machine's folder or one of its files cannot be used; the text says which and why."""
@@ -60,8 +62,8 @@ class Axis(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """
 
     type: AxisType = "linear"
-    min: Finite = -10_000.0
-    max: Finite = 10_000.0
+    min: Finite = -REACH
+    max: Finite = REACH
     velocity: Positive = 10_000.0
     acceleration: Positive = 500.0
     jerk: NotNegative = 0.0  # 0: not limited
@@ -240,15 +242,16 @@ class Machine:
         return EMPTY if id == 0 else self.tools.get(id)
 
 
-def built_in(axes: str = "XYZ", known: str = AXES) -> Machine:
-    """The machine that serves when none is given: ±10,000 mm, tools 1 to 5 without length or diameter.
+def built_in(axes: str = "XYZ", known: str = AXES, reach: float = REACH) -> Machine:
+    """The machine that serves when none is given: tools 1 to 5 without length or diameter.
 
-    axes: letters of the axes it has; A, B and C are rotary tables. known: those it may have. Raises MachineError.
+    axes: letters of the axes it has; A, B and C are rotary tables. known: those it may have. reach: how far the linear
+    ones may go to either side, mm. Raises MachineError.
     """
     letters = axes.lower()
     if not letters or set(letters) - set(known) or len(set(letters)) < len(letters):
         raise MachineError(f"axes {axes!r}: give some of {known.upper()}, each once")
-    file = File("built-in", axes={a: axis_of(a, {}) for a in letters})
+    file = File("built-in", axes={a: axis_of(a, {} if a in ROTARY else {"min": -reach, "max": reach}) for a in letters})
     return Machine(file, {i: Tool(i, slot=i) for i in range(1, 6)}, own_tools=False)
 
 

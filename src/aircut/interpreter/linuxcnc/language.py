@@ -23,6 +23,7 @@ from aircut.interpreter.linuxcnc.interpreter import Interpreter
 from aircut.interpreter.linuxcnc.named import NAMED
 from aircut.interpreter.linuxcnc.state import LAST, NINE
 from aircut.interpreter.table import Code, CutterRules, Dialect
+from aircut.machine.config import UNBOUNDED
 from aircut.machine.tools import Tool
 
 CODES = (
@@ -71,6 +72,7 @@ LINUXCNC = Dialect(
     no_variable="parameters are #1 to #5601",
     letters=NINE,
     axes="XYZABC",
+    reach=UNBOUNDED,
     takes_ini=True,
     table_unit=THEIR_INCH,
     parameters=range(1, LAST + 1),
