@@ -16,7 +16,7 @@ import aircut
 from aircut import dialects
 from aircut.api import Result
 from aircut.interpreter.table import Dialect
-from aircut.machine import Machine, MachineError
+from aircut.machine import Machine, MachineError, built_in
 from aircut.planner import PlanError
 
 PYTHON = Path("/usr/bin/python3")  # that LinuxCNC's package is for
@@ -189,11 +189,17 @@ def test_time_of_their_moves_is_refused() -> None:
 
 
 def test_their_travel_has_limits() -> None:
-    """The built-in machine's are 10,000 mm; a tool's offset counts."""
-    assert run("G0 U10000\nM2\n")[1]
-    assert not run("G0 U10000.001\nM2\n")[1]
-    assert not run("G43.1 U1\nG0 U10000\nM2\n")[1]
-    assert run("G43.1 U1\nG0 U9999\nM2\n")[1]
+    """A machine's own; a tool's offset counts. The interpreter's machine has none."""
+
+    def accepted(text: str) -> bool:
+        program = aircut.loads(f"G21\n{text}\nM2\n", "linuxcnc")
+        assert program.run(dialects.machine(dialects.load("linuxcnc"), LETTERS)).ok
+        return program.run(built_in(LETTERS, LETTERS.lower())).ok
+
+    assert accepted("G0 U10000")
+    assert not accepted("G0 U10000.001")
+    assert not accepted("G43.1 U1\nG0 U10000")
+    assert accepted("G43.1 U1\nG0 U9999")
 
 
 def test_rosetta_has_no_such_axes() -> None:
