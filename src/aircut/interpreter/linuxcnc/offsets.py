@@ -215,10 +215,11 @@ def set_tool(kind: int, m: State, w: Words) -> None:
     if given(w, "q") and (abs(w["q"] - round(w["q"])) > EQUAL or not 0 <= round(w["q"]) <= 9):
         raise Refusal(F.BAD_VALUE, "q", word="Q", value=w["q"], wanted="an orientation, 0 to 9")
     changes: dict[str, float] = {}
-    reads = tool_reads(kind, m)
-    for i, letter in NUMBERED_NINE:
-        if letter in w:
-            changes[letter] = m.axis(w, i) if kind == 1 else reads[i] - m.axis(w, i)
+    if kind == 1:
+        changes = {letter: m.axis(w, i) for i, letter in NUMBERED_NINE if letter in w}
+    elif named := [i for i, letter in NUMBERED_NINE if letter in w]:
+        offsets = tool_of_reading(kind, m, w, named, tool.offsets())
+        changes = {letter: offsets[i] for i, letter in NUMBERED_NINE if i in named or (i < 2 and min(named) < 2)}
     if "r" in w:
         changes["diameter"] = 2.0 * m.length(w, "r")
     changes |= {field: w[letter] for letter, field in (("i", "p1"), ("j", "p2")) if letter in w}
@@ -232,15 +233,24 @@ def set_tool(kind: int, m: State, w: Words) -> None:
         m.show_tool()
 
 
-def tool_reads(kind: int, m: State) -> list[float]:
-    """The present position as G10 L10 (in the active system) and L11 (in G59.3, without G92) see it."""
-    if kind != 11:
-        return [p + t for p, t in zip(m.position, m.tool_offset, strict=True)]
-    space = m.to_space(m.position)
-    first = ORIGINS + STEP * (SYSTEMS - 1)
-    moved = [s + t - o for s, t, o in zip(space, m.tool_offset, m.stored(first), strict=True)]
-    moved[0], moved[1] = m.turned(moved[0], moved[1], -m.numbered[first + 9])
-    return moved
+def tool_of_reading(kind: int, m: State, w: Words, named: list[int], offsets: list[float]) -> list[float]:
+    """Offsets of a tool with which the present position reads as the words say: in the active system (L10), or in
+    G59.3 without G92 (L11); the system is that of the parameters. X and Y are those along the system's axes.
+    """
+    first = ORIGINS + STEP * (m.system if kind == 10 else SYSTEMS - 1)
+    shift = m.shift if kind == 10 else [0.0] * 9
+    angle = m.numbered[first + 9]
+    place, used, kept = (
+        [*m.turned(values[0], values[1], -angle), *values[2:]]
+        for values in (
+            [s - o for s, o in zip(m.to_space(m.position), m.stored(first), strict=True)],
+            m.tool_offset,
+            offsets,
+        )
+    )
+    for i in named:
+        kept[i] = place[i] - shift[i] + used[i] - m.axis(w, i)
+    return [*m.turned(kept[0], kept[1], angle), *kept[2:]]
 
 
 def tell_tool(m: State, slot: int) -> None:
