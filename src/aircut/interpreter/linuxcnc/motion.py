@@ -91,7 +91,7 @@ def machine_goal(m: State, w: Words) -> list[float]:
 def polar(m: State, w: Words, place: list[float]) -> None:
     """@ radius and ^ angle, about the origin of X and Y. Raises Refusal."""
     x, y = m.position[0], m.position[1]
-    origin = abs(x) < TINY and abs(y) < TINY
+    origin = x == 0.0 and y == 0.0
     radius, angle = hypot(x, y), atan2(y, x)
     if m.absolute:
         if "@" in w and "^" not in w and origin:
