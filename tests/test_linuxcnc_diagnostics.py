@@ -132,3 +132,10 @@ def test_an_abort_and_a_runaway_end_a_check() -> None:
     limits = Limits(blocks=50)
     text = "o1 while [1]\no1 endwhile\nM2\n"
     assert [d[1] for d in faults(text, keep_going=True, limits=limits)] == ["block-budget"]
+
+
+def test_a_spline_whose_points_failed_has_none() -> None:
+    text = "G5.2 X1 Y1 L3\nX2 P1\nG5.3\nM2\n"
+    assert [d[1:3] for d in faults(text, keep_going=True)] == [
+        ("missing-feed", 1), ("wrong-state", 2), ("wrong-state", 3),
+    ]  # fmt: skip

@@ -9,6 +9,7 @@ import re
 from array import array
 from collections.abc import Iterable, Sequence
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
@@ -41,6 +42,7 @@ class Text:
         self.lines: dict[int, Line] = {}
         self.slow = bytearray(len(source))  # lines at which the fast lane has got nowhere
         self.ran = bytearray(len(source))  # plain lines that were run
+        self.looms: dict[int, Any] = {}  # loops compiled whole, by their first line; None: they cannot be
         self.words: Words | None = None
         self.plain: dict[int, tuple[bytes, array[float]]] = {}  # words of lines that were run again
 

@@ -207,6 +207,7 @@ class Flow:
                 self.breaking = False
             elif truth != 0.0:
                 self.run.jump(known.text, known.line + 1)
+                self.run.loop(known.text, known.line)
             return
         self.mark(label, "while")
         if truth == 0.0:
@@ -226,6 +227,7 @@ class Flow:
             self.continuing = False
             mark = self.marks[self.scoped(name)]
         self.run.jump(mark.text, mark.line)
+        self.run.loop(mark.text, mark.line)
 
     def do(self, line: OLine, name: str, sought: bool = False) -> None:
         self.nothing(line)
@@ -322,6 +324,8 @@ class Flow:
             if known.kind != ("o" if fanuc else "sub"):
                 raise refuse(f"{name} is not for this kind of call", KINDS)
             run.jump(known.text, known.line + 1)
+            if not fanuc:
+                run.routine(name, known.text, known.line + 1)
             return
         self.search = Search(name, True, fanuc, (run.unit, run.line), file)
         found = run.find_file(file)

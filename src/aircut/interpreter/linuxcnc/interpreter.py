@@ -9,7 +9,7 @@ import re
 from collections.abc import Generator
 from typing import Any
 
-from aircut.canon import CHUNK, ROW, Chunk
+from aircut.canon import CHUNK, ROW, Chunk, Recorder
 from aircut.diagnostics import Frame, Refusal, Severity, Span
 from aircut.diagnostics import faults as F
 from aircut.interpreter import path
@@ -21,10 +21,12 @@ from aircut.interpreter.linuxcnc.comments import say
 from aircut.interpreter.linuxcnc.files import Line, Text
 from aircut.interpreter.linuxcnc.flow import Flow, Search
 from aircut.interpreter.linuxcnc.lane import Lane
+from aircut.interpreter.linuxcnc.looms import ASKED, Loom, steady
 from aircut.interpreter.linuxcnc.shapes import Shape, shape_of
 from aircut.interpreter.linuxcnc.state import FAULTS, NINE, State
 from aircut.interpreter.linuxcnc.text import LONGEST, check, too_long
 from aircut.interpreter.linuxcnc.tooling import retained
+from aircut.interpreter.linuxcnc.weaving import weave_loop, weave_routine
 from aircut.interpreter.requests import Request
 from aircut.interpreter.running import Log, Run, Settings, Stopped
 from aircut.interpreter.table import Dialect, Group
@@ -55,6 +57,8 @@ class Interpreter(Run):
         for name, value in machine.names.items():  # kept from the run before
             self.state.write_name(name, value)
         self.flow = Flow(self)
+        self.routines: dict[str, Loom] = {}  # subroutines compiled whole
+        self.called: dict[str, int] = {}  # how often those that are not
         self.next_line = 0
         self.shared: dict[str, Block] = {}
         self.steps: dict[Any, Steps] = {}
@@ -398,13 +402,50 @@ class Interpreter(Run):
     def jump(self, text: Text, line: int) -> None:
         """Go on with this line."""
         if text is not self.unit:
-            self.unit = text
-            self.state.out.file = self.files.index(text.source.name)
+            self.enter_text(text)
         if line <= self.line:
             self.repeated += 1
             if self.repeated > self.settings.limits.blocks:
                 raise Refusal(F.BLOCK_BUDGET, limit=self.settings.limits.blocks, first=line + 1, last=self.line + 1)
         self.next_line = line
+
+    def advance(self, line: int, glide: bool) -> None:
+        """Run one line of a loop or subroutine that has been compiled, or a stretch of them. Raises Refusal."""
+        m = self.state
+        self.line = line
+        self.next_line = m.line = m.out.line = line + 1
+        if not glide or self.unit.slow[line] or not self.glide():
+            self.step()
+
+    def loop(self, text: Text, line: int) -> None:
+        """The program has jumped back to the start of a loop: run it compiled, if that can be."""
+        if line not in text.looms:
+            text.looms[line] = weave_loop(self, text, line)
+        loom = text.looms[line]
+        if loom is not None and loom.sub == self.flow.sub:
+            self.weave(loom)
+
+    def routine(self, name: str, text: Text, line: int) -> None:
+        """A subroutine has been entered at this line: run it compiled, if that can be, from the second time on."""
+        if name not in self.routines:
+            self.called[name] = self.called.get(name, 0) + 1
+            if self.called[name] == 2 and (loom := weave_routine(self, text, line, name)) is not None:
+                self.routines[name] = loom
+        if name in self.routines:
+            self.weave(self.routines[name])
+
+    def weave(self, loom: Loom) -> None:
+        """Run what is compiled, if all stands as its lines expect. Raises Refusal.
+
+        Contours of G70 to G72 are stepped through by those codes.
+        """
+        if steady(self.state) and not self.flow.continuing and isinstance(self.state.out, Recorder):
+            loom.run(self, ASKED)
+
+    def enter_text(self, text: Text) -> None:
+        """Go on in this text."""
+        self.unit = text
+        self.state.out.file = self.files.index(text.source.name)
 
     def run_off(self) -> None:
         """The file has no more lines: a call that found nothing is passed over in a check. Raises Stopped."""

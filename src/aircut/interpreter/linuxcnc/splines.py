@@ -117,7 +117,7 @@ def collect(m: State, w: Words) -> None:
 
 def run_collected(m: State, w: Words) -> None:
     """G5.3: the spline of the points collected. Raises Refusal."""
-    if m.motion_before != "g5.2":
+    if m.motion_before != "g5.2" or not m.spline:  # a G5.2 that failed leaves none
         raise wrong("G5.3 without G5.2 before")
     if len(m.spline) < m.spline_order:
         raise wrong(f"a spline of order {m.spline_order} needs as many points; there are {len(m.spline)}")
