@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Generator
 from pathlib import Path
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NoReturn
 
 from aircut.canon import CHUNK, ROW, Chunk
 from aircut.diagnostics import Fault, Frame, Refusal, Severity, Span
@@ -17,14 +17,15 @@ from aircut.interpreter.calls import ARGUMENTS, Call, Return
 from aircut.interpreter.compiling import FAILURES, explain
 from aircut.interpreter.inputs import switched_off
 from aircut.interpreter.lane import Lane
+from aircut.interpreter.looms import ASKED, DONE
 from aircut.interpreter.midway import Midway
 from aircut.interpreter.requests import Request
 from aircut.interpreter.running import WHOLE, Mode, Run, Settings, Stopped
 from aircut.interpreter.state import State
 from aircut.interpreter.table import Code, Dialect, Group, Words
 from aircut.interpreter.tooling import TOOL_CHANGE
-from aircut.interpreter.unit import Branch, Shape, Statement, Unit
-from aircut.interpreter.weaving import weave
+from aircut.interpreter.unit import Branch, Level, Shape, Statement, Unit
+from aircut.interpreter.weaving import DEEPEST_CALL, weave, weave_routine
 from aircut.kernels import scan
 from aircut.language.arithmetic import EQUAL, is_null
 from aircut.language.blocks import Block, parse
@@ -37,26 +38,11 @@ from aircut.source import Source
 FULL = CHUNK * ROW.size
 STRETCH = 4  # lines without others among them that the fast lane is worth while for
 PLAIN, BLANK = scan.PLAIN, scan.BLANK
-DEEPEST_CALL = 100
 WATCH = 64  # passes through a loop that are compared with one before
 EVALUATION = (*FAILURES, Refusal)
 FATAL = (F.BLOCK_BUDGET, F.ENDLESS_LOOP, F.USER_ERROR, F.PROBE_FAILED, F.INPUT_TIMEOUT, F.OPERATOR_STOP)
 UTF16 = (b"\xff\xfe", b"\xfe\xff")  # byte order marks
 SHAPE_WORD = re.compile(rb"([a-z])([\d.]*)")
-
-
-class Level(NamedTuple):
-    """A caller, waiting for its call to come back."""
-
-    unit: Unit
-    routine: Routine
-    back: int  # line to go on with
-    line: int  # line of the call, from 1
-    call: Call
-    left: int  # repetitions still to do
-    locals: list[float | None]
-    scope: dict[str, float | None]
-    moves: int  # made before it
 
 
 class Interpreter(Run):
@@ -77,9 +63,11 @@ class Interpreter(Run):
         self.plans: dict[bytes, Shape] = {}
         self.lane = Lane(self.state, min(len(source), settings.limits.moves or 0))
         self.routine = self.unit.entry()
+        self.modes: Any = ASKED  # what compiled loops and subroutines hand on, see looms.modes
         self.repeated = 0
         self.passes = 0
-        self.watched: tuple[int, int, tuple[Any, ...]] | None = None
+        self.watched: tuple[int, tuple[Any, ...]] | None = None  # a jump back, and the state then
+        self.until = 0  # so many passes are compared with it
         self.midway: Midway | None = None  # on the way to the start, while motion is only watched
         self.mark = 0  # line of the main program at which `pass_mark` has something to do, from 1; 0 none
         #: A code that asks the world: its conversation, the codes still to run, and the block's words.
@@ -206,7 +194,7 @@ class Interpreter(Run):
         self.routine = unit.entry()
         self.diagnostics = []
         self._told.clear()
-        self.repeated = self.passes = 0
+        self.repeated = self.passes = self.until = 0
         self.watched = self.ended = None
         m.locals, m.scope = [None] * 34, {}
         self.check_structure(unit)
@@ -229,7 +217,7 @@ class Interpreter(Run):
         plans = self.plans
         line = self.routine.first
         while True:
-            unit, end = self.unit, self.bound()
+            unit, routine, end = self.unit, self.routine, self.bound()
             classes, seen, cache = unit.source.classes, unit.seen, unit.plain
             slow, looms = unit.slow, unit.looms
             here = True
@@ -282,20 +270,22 @@ class Interpreter(Run):
                         line += 1
                     elif line in looms:
                         line = self.repeat(unit, line)
+                        here = self.routine is routine
                     else:
                         line = self.step(unit, line)
-                    if self.talk is not None:
-                        yield from self.converse()
-                    if m.transfer is not None:
-                        line = self.follow(line)
-                        here = False
+                    while self.talk is not None or m.transfer is not None:
+                        if self.talk is not None:
+                            yield from self.converse()
+                        if m.transfer is not None:
+                            line = self.follow(line)
+                            here = False
                 except Refusal as refusal:
                     self.tell_refusal(refusal, self.unit, self.line)
                     if not self.settings.keep_going or refusal.fault in FATAL:
                         self.halt()
                     self.recover(refusal)
-                    line = unit.structure.otherwise.get(self.line, self.line + 1)
-                    here = unit is self.unit
+                    line = self.unit.structure.otherwise.get(self.line, self.line + 1)
+                    here = self.routine is routine
                 if len(out.rows) >= FULL:
                     self.check_moves()
                     if self.midway is None:
@@ -308,13 +298,14 @@ class Interpreter(Run):
         loom = unit.looms[line]
         if loom is None or self.midway is not None or self.mark:
             return self.step(unit, line)
+        self.modes = ASKED
         line, whole = loom(self)
         if whole:
             return line
-        unit.seen[line] = 1
+        self.unit.seen[line] = 1
         self.line = line
         self.state.line = self.state.out.line = line + 1
-        return self.step(unit, line)
+        return self.step(self.unit, line)
 
     def glide(self, line: int) -> int:
         """Run a stretch of plain motion in the fast lane; returns the line to go on with, `line` if there is none."""
@@ -588,9 +579,10 @@ class Interpreter(Run):
         if target not in unit.looms and target in unit.structure.loops:
             unit.looms[target] = weave(unit, target)
         if self.passes & (self.passes - 1) == 0:
-            self.watched = (line, self.passes, self.state.snapshot())
-        elif self.watched and self.watched[0] == line and self.passes - self.watched[1] <= WATCH:
-            if self.watched[2] == self.state.snapshot():
+            self.watched = (line, self.state.snapshot())
+            self.until = self.passes + WATCH
+        elif self.watched and self.watched[0] == line and self.passes <= self.until:
+            if self.watched[1] == self.state.snapshot():
                 raise Refusal(F.ENDLESS_LOOP, first=target + 1, last=line + 1)
         return target
 
@@ -628,7 +620,18 @@ class Interpreter(Run):
         level = Level(self.unit, self.routine, back, m.line, call, call.repeat, m.locals, m.scope, m.out.moves)
         self.stack.append(level)
         m.calls = len(self.stack)
-        return self.enter(level, unit, routine)
+        line = self.enter(level, unit, routine)
+        if call.file or call.numbers or self.midway is not None or self.mark:
+            return line
+        key, caller = (call.name, call.numbered), level.unit
+        caller.called[key] += 1
+        if caller.called[key] == 2 and (callee := weave_routine(unit, routine)) is not None:
+            caller.callees[key] = callee
+        if key not in caller.callees:
+            return line
+        self.modes = ASKED
+        place = caller.callees[key].run(self)
+        return back if place is DONE else place[0]
 
     def enter(self, level: Level, unit: Unit, routine: Routine) -> int:
         """Start a subroutine, for the first time or again."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -20,6 +21,7 @@ from aircut.source import BATCH, Batch
 if TYPE_CHECKING:
     from array import array
 
+    from aircut.interpreter.calls import Call
     from aircut.interpreter.table import Code, Dialect
     from aircut.language.structure import Routine
     from aircut.source import Source
@@ -62,6 +64,20 @@ class Branch(NamedTuple):
     condition: Callable[..., Any] | None
 
 
+class Level(NamedTuple):
+    """A caller, waiting for its call to come back."""
+
+    unit: Unit
+    routine: Routine
+    back: int  # line to go on with
+    line: int  # line of the call, from 1
+    call: Call
+    left: int  # repetitions still to do
+    locals: list[float | None]
+    scope: dict[str, float | None]
+    moves: int  # made before it
+
+
 class Unit:
     """One text, ready to run in a dialect."""
 
@@ -76,6 +92,8 @@ class Unit:
         self.seen = bytearray(len(source))
         self.slow = bytearray(len(source))  # plain lines at which the fast lane has got nowhere
         self.looms: dict[int, Any] = {}  # loops compiled whole, by the line of their WHILE; None: they cannot be
+        self.called: Counter[tuple[str, bool]] = Counter()  # calls of names, numbered or not, from here
+        self.callees: dict[tuple[str, bool], Any] = {}  # subroutines compiled whole (looms.Callee), as called from here
         self.percent = False
         self.plain: dict[int, tuple[Shape, Any]] = {}  # plain lines that run again
         self.batch = Batch(min(BATCH, max(len(source), 1)))

@@ -1,6 +1,6 @@
-"""Loops as Python functions: what a WHILE repeats is compiled whole.
+"""Loops and subroutines as Python functions: what repeats is compiled whole.
 
-The general lane stays the meaning. A loop's function does what that would, line by line,
+The general lane stays the meaning. A function does what that would, line by line,
 and gives a line back before anything of it has happened where the line asks for more:
 a value that cannot be computed, a jump, a limit in the way, a line not run before.
 Straight moves are packed here; all other codes are carried out by the interpreter.
@@ -8,96 +8,53 @@ Straight moves are packed here; all other codes are carried out by the interpret
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
 from aircut.canon import CHUNK, ROW, Kind
 from aircut.diagnostics import Refusal
-from aircut.interpreter.compiling import ENVIRONMENT, FAILURES, Writer
-from aircut.interpreter.path import RECORDER
-from aircut.interpreter.table import Dialect, Group
-from aircut.interpreter.unit import Branch, Statement, Unit, takes_arguments
+from aircut.interpreter import calls
+from aircut.interpreter.compiling import ENVIRONMENT
+from aircut.interpreter.looms import (
+    ASKED,
+    DONE,
+    EVALUATION,
+    Callee,
+    Loom,
+    Values,
+    kept_words,
+    modes,
+    plain_name,
+    scope_of,
+)
+from aircut.interpreter.table import Group
+from aircut.interpreter.tooling import TOOL_CHANGE
+from aircut.interpreter.unit import Branch, Level, Statement, Unit
 from aircut.kernels import scan
 from aircut.language.arithmetic import LARGEST
-from aircut.language.blocks import Mark, Word, parse
+from aircut.language.blocks import Mark, parse
 from aircut.language.expressions import Application, Binary, Expression, Name, Number, Text, Variable
+from aircut.language.structure import Routine
 
-if TYPE_CHECKING:
-    from aircut.interpreter.interpreter import Interpreter
-    from aircut.interpreter.state import State
-
+DEEPEST_CALL = 100
+LOCALS = 34
 FULL = CHUNK * ROW.size
-FAR = 1e9  # as the general lane's
 STRAIGHT = {"g0": int(Kind.TRAVERSE), "g1": int(Kind.FEED)}
 LINEAR = "xyz"
-#: What ends a function early: the general lane runs that line, and says what is wrong with it.
-EVALUATION = (*FAILURES, Refusal, KeyError)
-
-Loom = Callable[["Interpreter"], tuple[int, bool]]
-
-
-class Modes(NamedTuple):
-    """What straight moves need to know; it is asked again after codes that may change it."""
-
-    absolute: bool
-    unit: float  # mm
-    feed: float  # mm/min
-    tool: int
-    plane: int
-    flags: int
-    box: tuple[float, ...]  # lowest and highest X, then Y, Z, in the program's frame, mm
-    offset: tuple[float, ...]
-
-
-def modes(m: State) -> Modes | None:
-    """The modes, if a straight move leads just from words to a row under them."""
-    if (
-        m.way is not RECORDER or m.frame is not None or m.macro is not None or m.compensating or m.polar
-        or m.inverse_time or m.surface_feed or m.exact_stop or m.machine_frame or m.indexers or m.feed <= 0.0
-        or m.motion is not m.modal.get(Group.MOTION)
-    ):  # fmt: skip
-        return None
-    x, y, z, a, b, c = m.position
-    lx, hx, ly, hy, lz, hz, la, ha, lb, hb, lc, hc = m.box
-    if not (lx <= x <= hx and ly <= y <= hy and lz <= z <= hz and la <= a <= ha and lb <= b <= hb and lc <= c <= hc):
-        return None
-    box = m.box
-    if lx < -FAR or hx > FAR or ly < -FAR or hy > FAR or lz < -FAR or hz > FAR:
-        box = tuple(min(max(limit, -FAR), FAR) for limit in box)
-    return Modes(m.absolute, m.unit, m.feed, m.tool, m.plane, m.flags, box, tuple(m.offset))
 
 
 class Unwoven(Exception):
-    """The loop cannot be compiled."""
-
-
-class Values(Writer):
-    """Writes expressions; names of the program's own are looked up at once."""
-
-    def expression(self, node: Expression | Text) -> tuple[str, int]:
-        if isinstance(node, Name) and (name := plain_name(node)) is not None and name not in self.dialect.named:
-            return f"{scope_of(name, self.dialect)}[{name!r}]", 0
-        return super().expression(node)
-
-
-def plain_name(node: Name) -> str | None:
-    """The text of a name without indexes."""
-    parts = [part for part in node.parts if isinstance(part, str)]
-    return "".join(parts) if len(parts) == len(node.parts) else None
-
-
-def scope_of(name: str, dialect: Dialect) -> str:
-    return "S" if name.startswith("_") == dialect.local_underscore else "N"
+    """It cannot be compiled."""
 
 
 class Weaver:
-    """Writes the function of one loop."""
+    """Writes the function of one loop or subroutine."""
 
-    def __init__(self, unit: Unit) -> None:
+    def __init__(self, unit: Unit, routine: Routine | None = None) -> None:
+        """routine: the one that is to be compiled, no loop."""
         self.unit = unit
+        self.routine = routine
         self.lines: list[str] = []
         self.space: dict[str, Any] = {"unit": unit, "seen": unit.seen}
-        self.run_from = self.run_to = 0  # lines of the straight run being written
 
     # --- text
 
@@ -133,10 +90,15 @@ class Weaver:
         self.passed(depth + 1, last)
         self.put(
             depth + 1,
-            f"line = {last}",
-            "acting = True",
-            f"back(unit, {last}, {first})",
-            "acting = False",
+            "passes = run.passes + 1",
+            f"if passes & run.passes == 0 or passes <= run.until or run.repeated + {last - first + 1} > limit:",
+            f"    line = {last}",
+            "    acting = True",
+            f"    back(unit, {last}, {first})",
+            "    acting = False",
+            "else:",
+            "    run.passes = passes",
+            f"    run.repeated += {last - first + 1}",
             f"if len(out.rows) >= {FULL}: return {first}, True",
         )
         return after
@@ -243,10 +205,94 @@ class Weaver:
             self.value(depth, "t", block.condition, at)
             self.put(depth, f"if t is None: return {at}, False", "if t != 0.0:", "    pass")
             depth += 1
-        if block.jump is not None or not self.settings_known(whole):
+        if self.routine is not None and self.returns(whole):
+            self.back(depth, at, self.routine)
+        elif block.jump is not None or not self.settings_known(whole):
             self.put(depth, f"return {at}, False")
-            return
-        self.statement(depth, at, whole)
+        elif not self.call(depth, at, whole):
+            self.statement(depth, at, whole)
+
+    def returns(self, statement: Statement) -> bool:
+        """Whether a line leads back to the caller, and does no more."""
+        block = statement.block
+        if statement.letters or block.settings or statement.comment:
+            return False
+        if block.jump is not None:
+            return block.jump.kind in ("return", "endsub") and not statement.codes
+        rows = [self.unit.dialect.codes.get(name) for name in statement.codes]
+        return len(rows) == 1 and rows[0] is not None and rows[0].run is calls.back
+
+    def back(self, depth: int, at: int, routine: Routine) -> None:
+        """Go back to the caller of a subroutine."""
+        blocks = max(at + 1 - routine.first, 0)
+        self.put(
+            depth,
+            f"if not stack: return {at}, False",
+            "level = stack[-1]",
+            "call = level.call",
+            "if level.left != 1 or call.then is not None or call.name == TOOL_CHANGE or m.macro is not None"
+            f" or run.repeated + {blocks} > limit: return {at}, False",
+            "stack.pop()",
+            f"run.repeated += {blocks}",
+            "if call.own_locals: m.locals = level.locals",
+            "m.scope = level.scope",
+            "m.calls = len(stack)",
+            "run.unit, run.routine = level.unit, level.routine",
+            "if level.unit is not unit: out.file = run.files.index(level.unit.source.name)",
+            f"run.line = {at}",
+            "m.line = out.line = level.line",
+            "run.modes = M",
+            "return done",
+        )
+
+    def call(self, depth: int, at: int, statement: Statement) -> bool:
+        """A call of a subroutine by its function, where it has one; False if the line is no such call."""
+        row = self.unit.dialect.codes.get(statement.codes[0]) if len(statement.codes) == 1 else None
+        if row is None or row.run not in (calls.macro, calls.call) or statement.moving:
+            return False
+        words = kept_words(statement, self.unit.dialect)
+        own = row.run is calls.macro
+        target = next((word.value for word in words if word.letter == "p"), None)
+        given = [word for word in words if word.letter != "p"]
+        if statement.block.settings or statement.comment or any(word.letter not in calls.ARGUMENTS for word in given):
+            return False
+        if not isinstance(target, Number | Text) or (given and not own):
+            return False
+        name, numbered = calls.callee({"p": target.value if isinstance(target, Number) else target.text})
+        for i, word in enumerate(given):
+            self.value(depth, f"a{i}", word.value, at)
+            if not isinstance(word.value, Number):
+                self.put(depth, f"if a{i} is None: return {at}, False")
+        places = {calls.ARGUMENTS[word.letter]: f"a{i}" for i, word in enumerate(given)}
+        arguments = ", ".join(f"{word.letter!r}: a{i}" for i, word in enumerate(given))
+        scope = ", ".join(f"'_args.{word.letter}': a{i}" for i, word in enumerate(given))
+        self.put(
+            depth,
+            f"callee = callees.get({(name, numbered)!r})",
+            f"if callee is None or len(stack) >= {DEEPEST_CALL} or run.repeated >= limit or m.compensating"
+            f" or m.macro is not None: return {at}, False",
+            f"call = new(Call, ({name!r}, {numbered}, 1, {'{' + arguments + '}' if own else None}, (), None, False))",
+            f"stack.append(new(Level, (unit, run.routine, {at + 1}, {at + 1}, call, 1, L, S,"
+            f" out.first + len(out.rows) // {ROW.size})))",
+            "m.calls = len(stack)",
+            "_, run.unit, run.routine = callee",
+            "if run.unit is not unit: out.file = run.files.index(run.unit.source.name)",
+            f"m.scope = {{{scope if own else ''}}}",
+            "run.repeated += 1",
+            "if M is asked or M is None: m.motion = m.modal[motion_group]",  # else it is that
+        )
+        if own:
+            self.put(depth, f"m.locals = [{', '.join(places.get(i, 'None') for i in range(LOCALS))}]")
+        self.put(
+            depth,
+            "run.modes = M",
+            "acting = None",
+            "place = callee.run(run)",
+            "acting = False",
+            "if place is not done: return place",
+            "M = run.modes",
+        )
+        return True
 
     def settings_known(self, statement: Statement) -> bool:
         """Whether the settings can be made here: those that may fail stand alone."""
@@ -308,43 +354,55 @@ class Weaver:
 
     def move(self, depth: int, at: int, code: str, words: dict[str, str]) -> None:
         """A straight move, from words to its row."""
-        self.put(depth, "absolute, scale, speed, tool, plane, flags, box, offset = M", "x, y, z, a, b, c = m.position")
-        for letter, word in words.items():
-            self.put(depth, f"{letter} = {word} * scale if absolute else {letter} + {word} * scale")
-        inside = " and ".join(
-            f"box[{2 * i}] <= {letter} <= box[{2 * i + 1}]" for i, letter in enumerate(LINEAR) if letter in words
-        )
-        self.put(depth, f"if not ({inside}): return {at}, False")
-        if code:
-            self.put(depth, f"if m.motion is not {code}: run.set_mode({code})")
-        kind = str(STRAIGHT[code]) if code else "(1 if m.motion is g1 else 0)"
         self.put(
             depth,
-            f"kind = {kind}",
-            "i, j, k, n, o, p = offset",
-            "out.rows += pack(x + i, y + j, z + k, a + n, b + o, c + p, 0.0, 0.0, speed if kind else 0.0, "
-            f"{at + 1}, tool, 0, out.file, kind, plane, flags)",
-            "m.position = [x, y, z, a, b, c]",
+            "if known is not M:",
+            "    absolute, scale, speed, tool, plane, flags, box, (ox, oy, oz, oa, ob, oc) = known = M",
+            "    lx, hx, ly, hy, lz, hz, *_ = box",
+            "    here = None",
+            "if here is not m.position:",
+            "    x, y, z, a, b, c = here = m.position",
+            "    a += oa; b += ob; c += oc",
+        )
+        for letter, word in words.items():
+            self.put(depth, f"n{letter} = {word} * scale if absolute else {letter} + {word} * scale")
+        inside = " and ".join(f"l{letter} <= n{letter} <= h{letter}" for letter in words)
+        self.put(depth, f"if not ({inside}): return {at}, False")
+        for letter in words:
+            self.put(depth, f"{letter} = n{letter}")
+        if code:
+            self.put(depth, f"if m.motion is not {code}:")
+            self.put(depth + 1, f"m.modal[motion_group] = m.motion = {code}", "m.cycle = None")
+        else:
+            self.put(depth, "kind = 1 if m.motion is g1 else 0")
+        kind = str(STRAIGHT[code]) if code else "kind"
+        feed = "0.0" if code == "g0" else "speed" if code else "speed if kind else 0.0"
+        self.put(
+            depth,
+            f"out.rows += pack(x + ox, y + oy, z + oz, a, b, c, 0.0, 0.0, {feed}, {at + 1}, tool, 0, out.file,"
+            f" {kind}, plane, flags)",
+            "m.position = here = [x, y, z, *here[3:]]",
         )
 
-    def build(self, first: int) -> Loom:
-        """The function of a loop. Raises Unwoven."""
-        end = self.loop(2, first)
+    def build(self, first: int, end: int, last: str) -> Loom:
+        """The function of these lines. last: what it returns when it is through them."""
         head = [
             "def woven(run):",
             "    m = run.state",
             "    out = m.out",
             "    back = run.back",
             "    L, V, S, N = m.locals, m.numbered, m.scope, m.names",
+            "    stack, callees, limit = run.stack, unit.callees, run.settings.limits.blocks",
             "    g0, g1 = run.lane.motions[:2]",
             f"    unseen = seen.find(0, {first}, {end}) >= 0",
-            "    M = asked",
+            "    M = run.modes",
+            "    known = here = None",
             "    acting = False",
             "    try:",
-        ]
-        tail = [
-            f"        return {end}, True",
+            *self.lines,
+            f"        return {last}",
             "    except EVALUATION:",
+            "        if acting is None: raise",
             "        if not acting: return line, False",
             "        run.line = line",
             "        m.line = out.line = line + 1",
@@ -354,28 +412,36 @@ class Weaver:
             **ENVIRONMENT,
             **self.space,
             "modes": modes,
-            "asked": object(),
+            "asked": ASKED,
+            "done": DONE,
+            "new": tuple.__new__,
+            "Level": Level,
+            "Call": calls.Call,
+            "TOOL_CHANGE": TOOL_CHANGE,
+            "motion_group": Group.MOTION,
             "pack": ROW.pack,
             "EVALUATION": EVALUATION,
         }
-        exec(compile("\n".join([*head, *self.lines, *tail]), "<loop>", "exec"), space)
+        exec(compile("\n".join(head), "<woven>", "exec"), space)
         woven: Loom = space["woven"]
         return woven
 
 
-def kept_words(statement: Statement, dialect: Dialect) -> list[Word]:
-    """The words that are not codes with literal numbers, as Statement.letters has them."""
-    macro = takes_arguments(statement.block, dialect)
-    return [
-        word
-        for word in statement.block.words
-        if not (isinstance(word.value, Number) and (word.letter == "g" or (word.letter == "m" and not macro)))
-    ]
-
-
 def weave(unit: Unit, first: int) -> Loom | None:
     """The function of the loop that begins at a line; None where it cannot be compiled."""
+    weaver = Weaver(unit)
     try:
-        return Weaver(unit).build(first)
+        end = weaver.loop(2, first)
+        return weaver.build(first, end, f"{end}, True")
+    except (Unwoven, Refusal, RecursionError, SyntaxError):
+        return None
+
+
+def weave_routine(unit: Unit, routine: Routine) -> Callee | None:
+    """The function of a subroutine; None where it cannot be compiled."""
+    weaver = Weaver(unit, routine)
+    try:
+        weaver.body(2, routine.first, routine.end)
+        return Callee(weaver.build(routine.first, routine.end, f"{routine.end}, True"), unit, routine)
     except (Unwoven, Refusal, RecursionError, SyntaxError):
         return None
