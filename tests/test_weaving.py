@@ -17,6 +17,7 @@ VALUES = (
 )  # fmt: skip
 LINES = (
     "#1=[#1+1] G1 XV", "#2=V", "#100=V", "#101=V", "#<a>=V", "#<_b>=V", "#[100+#1]=V", "#[#1]=V", "#5001=V",
+    "#5221=V", "#[5220+1]=#1",
     "#2=V #100=V", "G1 XV YV", "G0 ZV", "XV", "G1 XV YV ZV F500", "YV ZV", "G2 XV YV R20", "G3 X1 I2 J[#1]", "FV",
     "G1 FV", "G91", "G90", "G20", "G21", "(a remark)", "#2=V (another)", "; nothing", "", "M3 S100", "G4 P0.1",
     "G1 X5 Y#1", "X1 Y2 Z3", "N70 G1 XV", "IF [V GT 1] THEN #2=V", "IF [V] THEN G1 XV", "IF [#1 GT 30] THEN BREAK1",

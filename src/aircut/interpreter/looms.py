@@ -6,8 +6,10 @@ See `weaving`.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from struct import Struct
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from aircut.canon import ROW
 from aircut.diagnostics import Refusal
 from aircut.interpreter.compiling import FAILURES, Writer
 from aircut.interpreter.path import RECORDER
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 
 #: Relations written out: null counts as 0.
 RELATIONS = {"lt": "<", "le": "<=", "gt": ">", "ge": ">="}
+LINEAR_PLACE = Struct("<3d")  # X Y Z, the beginning of a row
 FAR = 1e9  # as the general lane's
 #: What ends a function early: the general lane runs that line, and says what is wrong with it.
 EVALUATION = (*FAILURES, Refusal, KeyError)
@@ -42,17 +45,17 @@ class Callee(NamedTuple):
     routine: Routine
 
 
-class Modes(NamedTuple):
-    """What straight moves need to know; it is asked again after codes that may change it."""
+#: What straight moves need to know: absolute, mm a program unit; lowest and highest X, then Y, Z, in the program's
+#: frame; the offset of X Y Z; and what a `template` takes. It is asked for again behind codes that may change it.
+Modes = tuple[Any, ...]
 
-    absolute: bool
-    unit: float  # mm
-    feed: float  # mm/min
-    tool: int
-    plane: int
-    flags: int
-    box: tuple[float, ...]  # lowest and highest X, then Y, Z, in the program's frame, mm
-    offset: tuple[float, ...]
+
+def template(rest: tuple[Any, ...], line: int, kind: int, file: int) -> bytearray:
+    """The row of a straight move but for X Y Z. rest: places of A B C, mm/min of a feed move, tool, plane, flags."""
+    a, b, c, speed, tool, plane, flags = rest
+    return bytearray(
+        ROW.pack(0.0, 0.0, 0.0, a, b, c, 0.0, 0.0, speed if kind else 0.0, line, tool, 0, file, kind, plane, flags)
+    )
 
 
 def modes(m: State) -> Modes | None:
@@ -67,10 +70,9 @@ def modes(m: State) -> Modes | None:
     lx, hx, ly, hy, lz, hz, la, ha, lb, hb, lc, hc = m.box
     if not (lx <= x <= hx and ly <= y <= hy and lz <= z <= hz and la <= a <= ha and lb <= b <= hb and lc <= c <= hc):
         return None
-    box = m.box
-    if lx < -FAR or hx > FAR or ly < -FAR or hy > FAR or lz < -FAR or hz > FAR:
-        box = tuple(min(max(limit, -FAR), FAR) for limit in box)
-    return Modes(m.absolute, m.unit, m.feed, m.tool, m.plane, m.flags, box, tuple(m.offset))
+    ox, oy, oz, oa, ob, oc = m.offset
+    rest = (a + oa, b + ob, c + oc, m.feed, m.tool, m.plane, m.flags)
+    return (m.absolute, m.unit, *(min(max(limit, -FAR), FAR) for limit in m.box[:6]), ox, oy, oz, rest)
 
 
 class Values(Writer):

@@ -18,6 +18,7 @@ from aircut.interpreter.looms import (
     ASKED,
     DONE,
     EVALUATION,
+    LINEAR_PLACE,
     Callee,
     Loom,
     Values,
@@ -25,6 +26,7 @@ from aircut.interpreter.looms import (
     modes,
     plain_name,
     scope_of,
+    template,
 )
 from aircut.interpreter.table import Group
 from aircut.interpreter.tooling import TOOL_CHANGE
@@ -40,6 +42,7 @@ LOCALS = 34
 FULL = CHUNK * ROW.size
 STRAIGHT = {"g0": int(Kind.TRAVERSE), "g1": int(Kind.FEED)}
 LINEAR = "xyz"
+SYSTEM = 5000  # writing variables from here on may change modes
 
 
 class Unwoven(Exception):
@@ -228,19 +231,18 @@ class Weaver:
         self.put(
             depth,
             f"if not stack: return {at}, False",
-            "level = stack[-1]",
-            "call = level.call",
-            "if level.left != 1 or call.then is not None or call.name == TOOL_CHANGE or m.macro is not None"
+            "to, routine, _, called, call, left, kept, scope, _ = stack[-1]",
+            "if left != 1 or call.then is not None or call.name == TOOL_CHANGE or m.macro is not None"
             f" or run.repeated + {blocks} > limit: return {at}, False",
             "stack.pop()",
             f"run.repeated += {blocks}",
-            "if call.own_locals: m.locals = level.locals",
-            "m.scope = level.scope",
+            "if call.own_locals: m.locals = kept",
+            "m.scope = scope",
             "m.calls = len(stack)",
-            "run.unit, run.routine = level.unit, level.routine",
-            "if level.unit is not unit: out.file = run.files.index(level.unit.source.name)",
+            "run.unit, run.routine = to, routine",
+            "if to is not unit: out.file = run.files.index(to.source.name)",
             f"run.line = {at}",
-            "m.line = out.line = level.line",
+            "m.line = out.line = called",
             "run.modes = M",
             "return done",
         )
@@ -282,7 +284,9 @@ class Weaver:
             "if M is asked or M is None: m.motion = m.modal[motion_group]",  # else it is that
         )
         if own:
-            self.put(depth, f"m.locals = [{', '.join(places.get(i, 'None') for i in range(LOCALS))}]")
+            self.put(
+                depth, "m.locals = own = nulls[:]", *(f"own[{place}] = {value}" for place, value in places.items())
+            )
         self.put(
             depth,
             "run.modes = M",
@@ -325,6 +329,7 @@ class Weaver:
                 assert isinstance(setting.target, Variable)
                 self.value(depth, "i", setting.target.number, at)
                 self.put(depth, f"m.line = out.line = {at + 1}", f"m.write(i, s{i})")
+                self.put(depth, f"if not i < {SYSTEM}: M = asked")
         if statement.comment:
             self.put(depth, f"out.line = {at + 1}", f"out.event('COMMENT', {statement.comment.lstrip()!r})")
         if not statement.codes and not words:
@@ -357,12 +362,9 @@ class Weaver:
         self.put(
             depth,
             "if known is not M:",
-            "    absolute, scale, speed, tool, plane, flags, box, (ox, oy, oz, oa, ob, oc) = known = M",
-            "    lx, hx, ly, hy, lz, hz, *_ = box",
+            "    absolute, scale, lx, hx, ly, hy, lz, hz, ox, oy, oz, rest = known = M",
             "    here = None",
-            "if here is not m.position:",
-            "    x, y, z, a, b, c = here = m.position",
-            "    a += oa; b += ob; c += oc",
+            "if here is not m.position: x, y, z, a, b, c = here = m.position",
         )
         for letter, word in words.items():
             self.put(depth, f"n{letter} = {word} * scale if absolute else {letter} + {word} * scale")
@@ -376,12 +378,15 @@ class Weaver:
         else:
             self.put(depth, "kind = 1 if m.motion is g1 else 0")
         kind = str(STRAIGHT[code]) if code else "kind"
-        feed = "0.0" if code == "g0" else "speed" if code else "speed if kind else 0.0"
+        self.space[f"r_{at}"] = [None, None, None]  # the row of this line but for its place, and what it was made for
         self.put(
             depth,
-            f"out.rows += pack(x + ox, y + oy, z + oz, a, b, c, 0.0, 0.0, {feed}, {at + 1}, tool, 0, out.file,"
-            f" {kind}, plane, flags)",
-            "m.position = here = [x, y, z, *here[3:]]",
+            f"if r_{at}[0] is not M{'' if code else f' or r_{at}[2] != kind'}:",
+            f"    r_{at}[:] = M, template(rest, {at + 1}, {kind}, out.file), {kind}",
+            f"row = r_{at}[1]",
+            "place_in(row, 0, x + ox, y + oy, z + oz)",
+            "out.rows += row",
+            "m.position = here = [x, y, z, a, b, c]",
         )
 
     def build(self, first: int, end: int, last: str) -> Loom:
@@ -418,8 +423,10 @@ class Weaver:
             "Level": Level,
             "Call": calls.Call,
             "TOOL_CHANGE": TOOL_CHANGE,
+            "nulls": [None] * LOCALS,
             "motion_group": Group.MOTION,
-            "pack": ROW.pack,
+            "template": template,
+            "place_in": LINEAR_PLACE.pack_into,
             "EVALUATION": EVALUATION,
         }
         exec(compile("\n".join(head), "<woven>", "exec"), space)

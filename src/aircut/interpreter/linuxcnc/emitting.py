@@ -186,13 +186,10 @@ class Emitter:
         self.put(
             depth,
             "if known is not M:",
-            "    known = M",
-            "    absolute, unit, speed, tool, plane, flags, box, (dx, dy, dz, *d), (ox, oy, oz, *o) = M",
-            "    lx, hx, ly, hy, lz, hz, *_ = box",
+            "    absolute, unit, lx, hx, ly, hy, lz, hz, dx, dy, dz, ox, oy, oz, rest = known = M",
             "    place = None",
             "if place is not m.position:",
             "    x, y, z, a, b, c, u, v, w = place = m.position",
-            "    sa = a + d[0] + o[0]; sb = b + d[1] + o[1]; sc = c + d[2] + o[2]",
             "    sx = x + dx + ox; sy = y + dy + oy; sz = z + dz + oz",
         )
         for letter in words:
@@ -206,13 +203,16 @@ class Emitter:
             self.put(depth, f"if run.modal is not {code}:", f"    run.modal = {code}", f"    m.motion_name = {code!r}",
                      "    m.cycle = None")  # fmt: skip
         kind = str(STRAIGHT[code]) if code else "kind"
-        feed = "0.0" if code == "g0" else "speed" if code else "speed if kind else 0.0"
+        self.space[f"r_{at}"] = [None, None, None]  # the row of this line but for its place, and what it was made for
         if not code:
             self.put(depth, "kind = 1 if run.modal is g1 else 0")
         self.put(
             depth,
-            f"out.rows += pack(sx, sy, sz, sa, sb, sc, 0.0, 0.0, {feed},"
-            f" {at + 1}, tool, 0, out.file, {kind}, plane, flags)",
+            f"if r_{at}[0] is not M{'' if code else f' or r_{at}[2] != kind'}:",
+            f"    r_{at}[:] = M, template(rest, {at + 1}, {kind}, out.file), {kind}",
+            f"row = r_{at}[1]",
+            "place_in(row, 0, sx, sy, sz)",
+            "out.rows += row",
             "m.position = place = [x, y, z, a, b, c, u, v, w]",
             "m.told = place[:]",
         )

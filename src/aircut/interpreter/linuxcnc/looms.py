@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 #: Relations written out.
 RELATIONS = {"lt": "<", "le": "<=", "gt": ">", "ge": ">="}
 
-#: What straight moves need to know: absolute, mm a program unit, mm/min, tool, plane, flags, box, shift, origin.
+#: What straight moves need to know: absolute, mm a program unit; lowest and highest X, then Y, Z, in space; shift
+#: and origin of X Y Z; and what a template takes (see the house's `looms`).
 Modes = tuple[Any, ...]
 ASKED: Modes = (None,)  # the modes are to be asked for
 NEITHER: Modes = ()  # straight moves ask for more
@@ -51,9 +52,8 @@ def modes(run: Interpreter) -> Modes:
     space = m.to_space(m.position)
     if not all(box[2 * i] <= space[i] <= box[2 * i + 1] for i in range(6)):
         return NEITHER
-    return (
-        m.absolute, m.unit, m.gave_feed * m.unit, m.tool, m.plane, m.flags, box, tuple(m.shift[:6]), tuple(m.origin[:6])
-    )  # fmt: skip
+    rest = (*space[3:6], m.gave_feed * m.unit, m.tool, m.plane, m.flags)
+    return (m.absolute, m.unit, *box[:6], *m.shift[:3], *m.origin[:3], rest)
 
 
 def steady(m: State) -> bool:

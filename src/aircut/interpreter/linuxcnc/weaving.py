@@ -21,6 +21,7 @@ from aircut.interpreter.linuxcnc.emitting import Emitter
 from aircut.interpreter.linuxcnc.flow import DEEPEST, Level
 from aircut.interpreter.linuxcnc.looms import ASKED, Loom, Modes, fail, modes, steady
 from aircut.interpreter.linuxcnc.state import ARGUMENTS, LOCALS
+from aircut.interpreter.looms import LINEAR_PLACE, template
 from aircut.language.expressions import Expression
 
 if TYPE_CHECKING:
@@ -243,7 +244,8 @@ class Weaver(Emitter):
             self.value(depth, f"a{i}", node, at, False)
         self.put(depth, f"loom = routines.get({name!r})")
         self.leave(depth, at, f"loom is None or len(stack) >= {DEEPEST} or run.repeated >= limit or flow.uncalled")
-        self.space["zeros"] = (0.0,) * LOCALS
+        zeros = f"zeros_{len(nodes)}"
+        self.space[zeros] = (0.0,) * (LOCALS - len(nodes))
         values = "".join(f"a{i}, " for i in range(len(nodes)))
         counted = self.m.ini.counts_arguments
         scope = f"{{{ARGUMENTS!r}: {float(len(nodes))}}}" if counted else "{}"
@@ -251,7 +253,7 @@ class Weaver(Emitter):
             depth,
             f"kept = V[1:{LOCALS + 1}]",
             f"stack.append(new(Level, (text, {at + 1}, {self.sub!r}, kept, S, {name!r}, False, m.saved, 1)))",
-            f"V[1:{LOCALS + 1}] = ({values}*zeros[{len(nodes)}:])",
+            f"V[1:{LOCALS + 1}] = ({values}*{zeros})",
             "m.calls = len(stack)",
             f"m.scope = {scope}",
             "m.saved = None",
@@ -324,7 +326,8 @@ class Weaver(Emitter):
             "fail": fail,
             "Level": Level,
             "new": tuple.__new__,
-            "pack": ROW.pack,
+            "template": template,
+            "place_in": LINEAR_PLACE.pack_into,
             "EVALUATION": EVALUATION,
         }
         exec(compile("\n".join(head), f"<{title}>", "exec"), space)
