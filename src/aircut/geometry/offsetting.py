@@ -2,12 +2,12 @@
 
 Everything speaks the plane's own axes u and v, mm, counterclockwise from u to v.
 Offsets are to the left where positive, seen along the way. `turns` is that of
-`arcs`: positive counterclockwise, 0 for straight lines.
+`arcs`: positive counterclockwise, 0 for straight lines. kernels.beside has the same formulas, to the last bit.
 """
 
 from __future__ import annotations
 
-from math import atan2, hypot, pi, sqrt
+from math import atan2, pi, sqrt
 from typing import NamedTuple
 
 from aircut.geometry.arcs import sweep
@@ -41,7 +41,12 @@ class Element(NamedTuple):
 
 
 def distance(a: Point, b: Point) -> float:
-    return hypot(b[0] - a[0], b[1] - a[1])
+    return reach(b[0] - a[0], b[1] - a[1])
+
+
+def reach(u: float, v: float) -> float:
+    """Length of a vector."""
+    return sqrt(u * u + v * v)
 
 
 def heading(element: Element, point: Point) -> Vector:
@@ -51,7 +56,7 @@ def heading(element: Element, point: Point) -> Vector:
     else:
         sign = element.sign
         du, dv = sign * (element.center[1] - point[1]), sign * (point[0] - element.center[0])
-    length = hypot(du, dv)
+    length = reach(du, dv)
     return du / length, dv / length
 
 
@@ -128,22 +133,22 @@ def line_circle(line: Element, center: Point, radius: float) -> list[Point]:
     d = heading(line, line.end)
     du, dv = center[0] - line.start[0], center[1] - line.start[1]
     along, across = du * d[0] + dv * d[1], dv * d[0] - du * d[1]
-    return pair(line.start, d, along, radius**2 - across**2, radius)
+    return pair(line.start, d, along, radius * radius - across * across, radius)
 
 
 def circle_circle(a: Point, radius: float, b: Point, other: float) -> list[Point]:
     du, dv = b[0] - a[0], b[1] - a[1]
-    apart = hypot(du, dv)
+    apart = reach(du, dv)
     if apart < TOUCH * radius:
         return []
-    along = (apart**2 + radius**2 - other**2) / (2.0 * apart)
+    along = (apart * apart + radius * radius - other * other) / (2.0 * apart)
     foot = (a[0] + along * du / apart, a[1] + along * dv / apart)
-    return pair(foot, (-dv / apart, du / apart), 0.0, radius**2 - along**2, radius)
+    return pair(foot, (-dv / apart, du / apart), 0.0, radius * radius - along * along, radius)
 
 
 def pair(origin: Point, direction: Vector, along: float, square: float, radius: float) -> list[Point]:
     """The points at along ± √square from an origin; one where the square is a rounding error below zero."""
-    if square < -TOUCH * radius**2:
+    if square < -TOUCH * (radius * radius):
         return []
     half = sqrt(max(square, 0.0))
     return [(origin[0] + t * direction[0], origin[1] + t * direction[1]) for t in (along - half, along + half)]
@@ -208,7 +213,7 @@ def center_between(start: Point, end: Point, center: Point) -> Point | None:
     and end; None where there is no such point.
     """
     au, av = center[0] - end[0], center[1] - end[1]
-    length = hypot(au, av)
+    length = reach(au, av)
     if length == 0.0:
         return None
     au, av = au / length, av / length

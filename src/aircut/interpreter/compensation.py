@@ -10,7 +10,6 @@ tool as LinuxCNC's interpreter does (canonical listing, section 12).
 
 from __future__ import annotations
 
-from math import hypot
 from typing import NamedTuple
 
 from aircut.canon import ROW, Kind
@@ -23,6 +22,7 @@ from aircut.geometry.offsetting import (
     center_between,
     corner,
     crossings,
+    distance,
     heading,
     nearest,
     offset,
@@ -71,6 +71,7 @@ class Compensation:
         self.shift = shift
         self.contour = m.to_space(m.position)  # as programmed, up to here
         self.tool = self.flat(self.contour)  # in the plane, up to what has been written
+        self.written: Place | None = None  # end of the last move written
         self.entered = False
         self.traced = False  # the contour as programmed has been begun
         self.held: Held | None = None
@@ -83,7 +84,7 @@ class Compensation:
 
     def line(self, m: State, kind: int, end: Place, speed: float, flags: int, *, onward: Onward) -> None:
         here, there = self.flat(self.contour), self.flat(end)
-        still = hypot(there[0] - here[0], there[1] - here[1]) < STILL
+        still = distance(here, there) < STILL
         self.meet(m, self.known(m, kind, end, None if still else Element(here, there), speed, flags), onward)
 
     def arc(
@@ -248,6 +249,7 @@ class Compensation:
             onward.arc(m, goal, (center[0] + du, center[1] + dv), turns, move.speed, move.flags)
         out.line, out.file, m.tool = line, file, tool
         self.tool = end
+        self.written = goal
 
     def trace(self, m: State, move: Move) -> None:
         """Note the contour as programmed, for pictures."""
@@ -265,11 +267,13 @@ class Compensation:
 class Nist(Compensation):
     """The entry ends beside the end of the first move, square to it."""
 
+    loose = False  # LinuxCNC's rules for what follows the entry
+
     def enter(self, m: State, move: Move) -> None:
         path = self.beside(m, move)
         element = move.element
         assert element is not None
-        length = hypot(element.end[0] - element.start[0], element.end[1] - element.start[1])
+        length = distance(element.start, element.end)
         if length <= self.radius:
             raise Refusal(F.SHORT_ENTRY, radius=self.radius / m.unit, length=length / m.unit)
         way = entry(element, path.end, self.tool)

@@ -10,8 +10,9 @@ from array import array
 from typing import TYPE_CHECKING
 
 from aircut.canon import CHUNK
-from aircut.interpreter import tipping
+from aircut.interpreter import leading, tipping
 from aircut.interpreter.holes import Holes
+from aircut.interpreter.leading import Leading
 from aircut.interpreter.path import RECORDER
 from aircut.interpreter.table import AXES
 from aircut.interpreter.tipping import Tipping
@@ -38,13 +39,14 @@ class Lane:
         self.feed_places = array("q", [0] * (2 * FEW))
         self.motions = [m.dialect.codes[name.lower()] for name in MOTIONS]
         self.tipping = Tipping()
+        self.leading = Leading()
         self.holes = Holes()
         m.out.room = kept
 
     def open(self, m: State) -> bool:
         """Whether plain motion means here what the kernel knows."""
         return (
-            (m.way is RECORDER or tipping.alone(m) is not None)
+            (m.way is RECORDER or tipping.alone(m) is not None or leading.alone(m) is not None)
             and m.frame is None
             and m.macro is None
             and not m.polar
@@ -72,6 +74,9 @@ class Lane:
         control = tipping.alone(m)
         if control is not None:
             return self.tipping.run(self, m, control, source, line, end)
+        stage = leading.alone(m)
+        if stage is not None:
+            return self.leading.run(self, m, stage, source, line, end)
         out = m.out
         low, high = m.bounds()
         self.prepare(m, line, array("d", low + high))

@@ -27,11 +27,14 @@ def twin(name: str, as_name: str) -> ModuleType:
 
 if os.environ.get("AIRCUT_PYTHON_KERNELS"):
     scan = twin("scan", "aircut.kernels.scan")
+    plain = twin("plain", "aircut.kernels.plain")
+    holes = twin("holes", "aircut.kernels.holes")
     bounds = twin("bounds", "aircut.kernels.bounds")
     mesh = twin("mesh", "aircut.kernels.mesh")
     pieces = twin("pieces", "aircut.kernels.pieces")
     lookahead = twin("lookahead", "aircut.kernels.lookahead")
     thin = twin("thin", "aircut.kernels.thin")
     follow = twin("follow", "aircut.kernels.follow")
+    beside = twin("beside", "aircut.kernels.beside")
     printing = twin("printing", "aircut.kernels.printing")
     scurve = twin("scurve", "aircut.kernels.scurve")

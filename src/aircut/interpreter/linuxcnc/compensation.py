@@ -32,7 +32,7 @@ AT_ONCE = frozenset(("MESSAGE", "LOG", "PRINT", "SELECT_TOOL", "SELECT_PLANE", "
 class Beside(Nist):
     """The stage; its moves carry the line of the block that released them, as the listing has them."""
 
-    written: list[float] | None = None  # end of the last move written, machine coordinates
+    loose = True
 
     def corner(self, first: Element, second: Element) -> float:
         """Where the way leads back, or almost, the bend of the later arc tells inside from outside."""
@@ -68,8 +68,6 @@ class Beside(Nist):
 
     def write(self, m: house.State, move: Move, end: Point, center: Point | None, turns: int, onward: Onward) -> None:
         super().write(m, move._replace(line=m.out.line, file=m.out.file), end, center, turns, onward)
-        self.written = move.end[:]
-        self.written[self.u], self.written[self.v] = end[0] + self.shift[0], end[1] + self.shift[1]
 
 
 def begin(m: State, side: int, radius: float, orientation: int) -> None:

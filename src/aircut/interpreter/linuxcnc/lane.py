@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from array import array
 
-from aircut.interpreter import lane
+from aircut.interpreter import lane, leading
 from aircut.interpreter import state as house
 from aircut.interpreter.linuxcnc.state import FAULTS, State
 from aircut.interpreter.linuxcnc.text import LONGEST
@@ -26,7 +26,7 @@ class Lane(lane.Lane):
         assert isinstance(m, State)
         return (
             self.known(m)
-            and m.way is RECORDER
+            and (m.way is RECORDER or leading.alone(m) is not None)
             and m.feed_mode == 94
             and not m.stale
             and not m.arc_refused
@@ -60,6 +60,7 @@ class Lane(lane.Lane):
         assert isinstance(m, State)
         m.position[:6] = self.reals[plain.POSITION : plain.OFFSET]
         m.gave_feed = self.reals[plain.SAID]
+        m.feed = m.gave_feed * m.unit
         if self.numbers[plain.ROWS]:
             m.told = m.position[:]
             m.cycle = None

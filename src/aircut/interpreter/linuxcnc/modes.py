@@ -45,7 +45,8 @@ def set_feed_mode(mode: int, m: State, w: Words) -> None:
 
 def set_rate(m: State, feed: float) -> None:
     m.gave_feed = feed
-    m.out.event("SET_FEED_RATE", feed * m.unit)
+    m.feed = feed * m.unit
+    m.out.event("SET_FEED_RATE", m.feed)
 
 
 def feed_word(m: State, w: Words) -> None:
@@ -137,6 +138,7 @@ def set_units(unit: float, m: State, w: Words) -> None:
     m.tool_offset = [t * ratio if i in LINEAR else t for i, t in enumerate(m.tool_offset)]
     m.fence()
     m.unit = unit
+    m.feed = m.gave_feed * unit
     m.out.event("USE_LENGTH_UNITS", "MM" if unit == 1.0 else "INCHES")
 
 
