@@ -197,6 +197,9 @@ NAMES = [
 ]
 
 
+DETAIL = "num_spindles"  # begins a line between a message and the line of the program
+
+
 class Answer(NamedTuple):
     """What the interpreter made of a program. line: text of the one it refused, message: why."""
 
@@ -213,7 +216,7 @@ def ask(text: str, folder: Path) -> Answer:
     assert oracle.PROGRAM
     done = subprocess.run([oracle.PROGRAM, "-g", str(file)], capture_output=True, text=True, timeout=60, cwd=folder,
                           env={"HOME": str(folder)})  # fmt: skip
-    told = [*(done.stderr.splitlines()[1:] if done.returncode else ()), "", ""]
+    told = [line for line in done.stderr.splitlines()[1:] if done.returncode and not line.startswith(DETAIL)] + ["", ""]
     return Answer(done.stdout.splitlines(), done.returncode == 0, told[0], told[1].strip())
 
 

@@ -39,7 +39,8 @@ def difference(text: str, folder: Path) -> str:
     if not found and not result.ok:
         line = result.diagnostics[-1].span.line
         at = text.splitlines()[line - 1].strip() if line else ""
-        if theirs.line not in ("", at) and "seeking o-word" not in theirs.message:
+        cut = theirs.message == "Command too long" and at.startswith(theirs.line)
+        if theirs.line not in ("", at) and not cut and "seeking o-word" not in theirs.message:
             found = f"refused at {at!r}, theirs at {theirs.line!r}: {theirs.message}"
     if not found:
         return ""

@@ -133,6 +133,6 @@ CODES = (
     code("G40", "Compensation off", off),
     code("G41", "Compensation left", partial(of_table, +1), takes="dl"),
     code("G42", "Compensation right", partial(of_table, -1), takes="dl"),
-    code("G41.1", "Compensation left by a diameter given", partial(dynamic, +1), takes="dl"),
-    code("G42.1", "Compensation right by a diameter given", partial(dynamic, -1), takes="dl"),
+    code("G41.1", "Compensation left by a diameter given", partial(dynamic, +1), takes="dlr"),
+    code("G42.1", "Compensation right by a diameter given", partial(dynamic, -1), takes="dlr"),
 )

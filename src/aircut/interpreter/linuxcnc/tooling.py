@@ -143,7 +143,7 @@ CODES = (
     Code("M61", "Declare the tool", declare, Group.TOOL, Order.TOOL_CHANGE, takes="q"),
     length("G43", "Tool length", tool_length, takes="h"),
     length("G43.1", "Tool length as given", dynamic_length, axes=True),
-    length("G43.2", "Tool length added", added_length, axes=True, takes="h"),
+    length("G43.2", "Tool length added", added_length, axes=True, takes="h@^"),
     length("G49", "No tool length", no_length),
 )
 
