@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.language.arithmetic import EQUAL
 from aircut.language.arithmetic import FUNCTIONS as HOUSE_FUNCTIONS
 from aircut.language.arithmetic import OPERATORS as HOUSE_OPERATORS
 from aircut.language.arithmetic import finite as house_finite
@@ -60,11 +61,22 @@ def divide(left: float, right: float) -> float:
     return left / right
 
 
+def equal(left: float, right: float) -> float:
+    """Nothing equals an infinite value or what is no number."""
+    return 1.0 if abs(left - right) < EQUAL else 0.0
+
+
+def unequal(left: float, right: float) -> float:
+    """And those differ from finite numbers alone, the infinite ones."""
+    return 1.0 if abs(left - right) >= EQUAL else 0.0
+
+
 OWN: dict[str, Callable[..., float]] = {"acos": arc_cosine, "asin": arc_sine, "atan": arc_tangent}
+OWN_OPERATORS: dict[str, Callable[..., float]] = {
+    "mod": modulo, "**": power, "/": divide, "eq": equal, "ne": unequal
+}  # fmt: skip
 OPERATORS = tuple(
-    row._replace(run={"mod": modulo, "**": power, "/": divide}.get(row.name, row.run))
-    for row in HOUSE_OPERATORS
-    if row.name not in "&|^"
+    row._replace(run=OWN_OPERATORS.get(row.name, row.run)) for row in HOUSE_OPERATORS if row.name not in "&|^"
 )
 FUNCTIONS = tuple(row._replace(run=OWN.get(row.name, row.run)) for row in HOUSE_FUNCTIONS)
 OPERATOR_ROWS = {operator.name: operator for operator in OPERATORS}

@@ -138,7 +138,7 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
     if axes and not takers and motion is None:
         if cancels:
             raise Refusal(F.G80_AXES, axes[0])
-        if modal.weak:
+        if modal.weak and not any("@" in row.takes for row in rows):  # G43.2 looks at them itself
             raise Refusal(F.NO_MOTION_MODE, axes[0])
         motion = modal
         rows.append(modal)
@@ -147,7 +147,7 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
         if any(letter in modal.wakes and letter not in used for letter in letters):
             motion = modal
             rows.append(modal)
-    if polar and (any("@" not in row.takes for row in takers) or any("G0" in row.fits for row in rows)):
+    if polar and (takers or any("G0" in row.fits for row in rows)):
         raise Refusal(F.UNUSED_WORD, "@", word="@ or ^")
     for row in rows:
         mover = written if row.nameless else motion

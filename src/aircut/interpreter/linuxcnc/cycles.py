@@ -132,7 +132,8 @@ def remember(cycle: Cycle, normal: int, m: State, w: Words) -> Sticky:
     for letter in (axis, "r"):
         if not again and letter not in w:
             raise Refusal(F.MISSING_WORD, code=cycle.name, word=letter.upper(), meaning="")
-    level = m.position[normal] / m.unit if before is None else before.level
+    kept = None if before is None else before.level
+    level = m.position[normal] / m.unit if kept is None else kept
     return Sticky(cycle.name, level, dict(words))
 
 

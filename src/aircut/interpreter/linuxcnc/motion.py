@@ -148,7 +148,9 @@ def speed_of(m: State, w: Words, what: str, length: float) -> float:
         if "f" not in w:
             raise Refusal(F.INVERSE_TIME_FEED, "f")
         rate = max(SLOWEST, length * w["f"])
-        m.out.event("SET_FEED_RATE", rate * m.unit)
+        m.gave_feed = rate
+        m.feed = rate * m.unit
+        m.out.event("SET_FEED_RATE", m.feed)
         return rate * m.unit
     if m.gave_feed <= 0.0:
         raise Refusal(F.MISSING_FEED)

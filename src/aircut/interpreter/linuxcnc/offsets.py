@@ -72,7 +72,7 @@ def set_here(m: State, w: Words) -> None:
     shift = m.shift[:]
     for i, letter in NUMBERED_NINE:
         if letter in w:
-            shift[i] += m.position[i] - m.axis(w, i)
+            shift[i] = m.position[i] + shift[i] - m.axis(w, i)
     put_shift(m, shift)
 
 
@@ -165,11 +165,14 @@ def set_system(here: bool, m: State, w: Words) -> None:
             if letter in w:
                 m.numbered[first + i] = m.axis(w, i) / (INCH if i in LINEAR else 1.0)
     if system == m.system:
+        turned = rotation != m.rotation
         moved = m.position[:]
         moved[0], moved[1] = m.turned(moved[0], moved[1], m.rotation)
         moved = [p + o for p, o in zip(moved, m.origin, strict=True)]
         m.load_system()
-        if not here:  # LinuxCNC forgets here that G92's offset turns too: the machine's position does not stay
+        if (
+            not here or turned
+        ):  # LinuxCNC forgets here that G92's offset turns too: the machine's position does not stay
             moved = [p - o for p, o in zip(moved, m.origin, strict=True)]
             moved[0], moved[1] = m.turned(moved[0], moved[1], -m.rotation)
             m.position = moved
@@ -238,7 +241,7 @@ def tool_of_reading(kind: int, m: State, w: Words, named: list[int], offsets: li
     G59.3 without G92 (L11); the system is that of the parameters. X and Y are those along the system's axes.
     """
     first = ORIGINS + STEP * (m.system if kind == 10 else SYSTEMS - 1)
-    shift = m.shift if kind == 10 else [0.0] * 9
+    shift = m.stored(G92 + 1) if kind == 10 and m.numbered[G92] else [0.0] * 9
     angle = m.numbered[first + 9]
     place, used, kept = (
         [*m.turned(values[0], values[1], -angle), *values[2:]]

@@ -52,8 +52,8 @@ def trace(m: State, count: int, points: Sequence[Point], end: list[float]) -> No
         go(m, FEED, [x, y, *m.position[2:]], m.gave_feed * m.unit, m.flags | TOLD)
     m.position = end
     m.told = told
-    if m.cycle is not None:  # a cycle in force goes on afterwards, from the height of then
-        m.cycle = m.cycle._replace(level=m.position[2] / m.unit)
+    if m.cycle is not None:  # a cycle in force goes on afterwards, from where it finds the tool
+        m.cycle = m.cycle._replace(level=None)
 
 
 def cubic(m: State, w: Words) -> None:
@@ -70,6 +70,7 @@ def cubic(m: State, w: Words) -> None:
         before = m.spline_end or (0.0, 0.0)
         leave = (-before[0], -before[1])
     m.spline_end = (m.length(w, "p"), m.length(w, "q"))
+    m.sticky |= {"i": -w["p"], "j": -w["q"]}  # LinuxCNC keeps them where a cycle in force finds its I and J
     points = [
         (start[0], start[1]),
         (start[0] + leave[0], start[1] + leave[1]),

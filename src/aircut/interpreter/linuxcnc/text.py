@@ -42,6 +42,8 @@ def clean(text: str, length: int) -> Clean:
             elif inner is not None:
                 code.append(COMMENT)
                 comment = inner
+            elif stray == ")":  # found where the line is read further
+                code.append(stray)
             elif stray is not None and rest is None:
                 at = piece.start()
                 raise Refusal(stray_fault(text, at), where=(at, at + 1))
@@ -61,7 +63,7 @@ def columns(text: str) -> list[int]:
     for piece in PIECES.finditer(text):
         if piece[3] is not None:
             places += [at for at in range(*piece.span()) if text[at] not in BLANKS]
-        elif piece[1] is not None:
+        elif piece[1] is not None or piece[4] is not None:
             places.append(piece.start())
         elif piece[2] is not None:
             break
@@ -71,6 +73,9 @@ def columns(text: str) -> list[int]:
 
 def check(code: str) -> None:
     """Refuse characters that no line holds outside comments. Raises Refusal."""
+    if ")" in code:
+        at = code.index(")")
+        raise Refusal(F.STRAY_PARENTHESIS, where=(at, at + 1))
     if strange := STRANGE.search(code):
         character = f"“{strange[0]}”" if strange[0].isprintable() else f"character {ord(strange[0]):#04x}"
         raise Refusal(F.ILLEGAL_CHARACTER, where=strange.span(), character=character, hint="")

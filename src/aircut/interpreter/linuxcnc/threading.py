@@ -11,6 +11,7 @@ from math import hypot, radians, tan
 from aircut.canon import TOLD
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.interpreter.cutter import SLOT
 from aircut.interpreter.linuxcnc.modes import spindle_of
 from aircut.interpreter.linuxcnc.motion import FEED, TRAVERSE, go, goal, wrong
 from aircut.interpreter.linuxcnc.state import State
@@ -20,12 +21,18 @@ STANDING = 5
 ENTRY, EXIT = 1, 2  # bits of G76's L
 
 
-def follows(m: State, w: Words, what: str) -> None:
+def follows(m: State, what: str) -> None:
     """What all of them need. Raises Refusal."""
     if m.spindle == STANDING:
         raise wrong(f"{what} needs a turning spindle", "program S and M3")
-    if m.cutter:
-        raise Refusal(F.UNDER_COMPENSATION, what=what)
+
+
+def beside(m: State, w: Words) -> bool:
+    """Beside a contour G33 and G33.1 are straight moves like others, which nothing joins to the spindle."""
+    if SLOT not in m.stages:
+        return False
+    go(m, FEED, goal(m, w), abs(m.length(w, "k")) * m.speed)
+    return True
 
 
 def start(m: State, pitch: float) -> None:
@@ -44,7 +51,9 @@ def check_synchronized(m: State, w: Words) -> None:
 
 def synchronized(m: State, w: Words) -> None:
     """G33: K is the way for a turn of the spindle. Raises Refusal."""
-    follows(m, w, "G33")
+    follows(m, "G33")
+    if beside(m, w):
+        return
     pitch = m.length(w, "k")
     place = goal(m, w)
     start(m, pitch)
@@ -54,7 +63,9 @@ def synchronized(m: State, w: Words) -> None:
 
 def rigid_tap(m: State, w: Words) -> None:
     """G33.1: down and back, the spindle turning the other way; the position stays. Raises Refusal."""
-    follows(m, w, "G33.1")
+    follows(m, "G33.1")
+    if beside(m, w):
+        return
     place = goal(m, w)
     pitch = m.length(w, "k")
     here, told = m.position, m.told
@@ -68,7 +79,9 @@ def rigid_tap(m: State, w: Words) -> None:
 
 def thread(m: State, w: Words) -> None:
     """G76: passes along Z, each deeper than the one before. Raises Refusal."""
-    follows(m, w, "G76")
+    follows(m, "G76")
+    if m.cutter:
+        raise Refusal(F.UNDER_COMPENSATION, what="G76")
     half = 2.0 if m.diameter else 1.0
     pitch = m.length(w, "p")
     peak, first, full = (m.length(w, letter) / half for letter in "ijk")

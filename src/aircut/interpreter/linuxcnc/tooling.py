@@ -13,7 +13,6 @@ from aircut.diagnostics import faults as F
 from aircut.interpreter.linuxcnc.arranging import given
 from aircut.interpreter.linuxcnc.motion import home_of, index_and_go, wrong
 from aircut.interpreter.linuxcnc.state import G30, NUMBERED_NINE, State
-from aircut.interpreter.state import EQUAL
 from aircut.interpreter.table import Code, Group, Order, Words
 
 
@@ -66,7 +65,7 @@ def declare(m: State, w: Words) -> None:
     if not given(w, "q"):
         raise Refusal(F.MISSING_WORD, code="M61", word="Q", meaning="the tool's number")
     number = round(w["q"])
-    if abs(w["q"] - number) > EQUAL or number < 0:
+    if number < 0:
         raise Refusal(F.BAD_VALUE, "q", word="Q", value=w["q"], wanted="a tool's number")
     slot = m.slot_of(number)
     m.out.event("CHANGE_TOOL_NUMBER", slot)
@@ -77,8 +76,12 @@ def declare(m: State, w: Words) -> None:
 
 
 def put_offset(m: State, offset: list[float]) -> None:
-    """Put a tool's offset in force: the position reads otherwise, nothing moves."""
-    m.position = [p + b - n for p, b, n in zip(m.position, m.tool_offset, offset, strict=True)]
+    """Put a tool's offset in force: the position reads otherwise, nothing moves. It lies along the machine's axes."""
+    before = m.tool_offset
+    steps = [b - n for b, n in zip(before, offset, strict=True)]
+    if m.rotation:
+        steps[:2] = m.turned(steps[0], steps[1], -m.rotation)
+    m.position = [p + s for p, s in zip(m.position, steps, strict=True)]
     m.tool_offset = offset
     m.fence()
     m.out.event("USE_TOOL_LENGTH_OFFSET", *offset)
@@ -122,7 +125,7 @@ def added_length(m: State, w: Words) -> None:
     """G43.2: a tool's offset on top of that in force. Raises Refusal."""
     bar(m)
     if any(letter in w for _, letter in NUMBERED_NINE):
-        raise Refusal(F.NO_TOOL, "h", tool=-1)
+        raise wrong("G43.2 takes no axis words", "its offset is that of the tool H")
     if "h" not in w:
         raise wrong("G43.2 needs H")
     m.length_on = True
@@ -143,7 +146,7 @@ CODES = (
     Code("M61", "Declare the tool", declare, Group.TOOL, Order.TOOL_CHANGE, takes="q"),
     length("G43", "Tool length", tool_length, takes="h"),
     length("G43.1", "Tool length as given", dynamic_length, axes=True),
-    length("G43.2", "Tool length added", added_length, axes=True, takes="h@^"),
+    length("G43.2", "Tool length added", added_length, takes="h@^"),
     length("G49", "No tool length", no_length),
 )
 
