@@ -232,6 +232,7 @@ class Writer:
         self.label = 100
         self.depth = 0
         self.subs: list[str] = []
+        self.behind: list[str] = []  # what follows the end of the program: subroutines of M98
         self.faulty = self.random.choice((0.0, 0.0, 0.0, 0.03, 0.15))
         self.odd = self.random.choice((0.0, 0.0, 0.1))  # strange spellings
         topics: dict[str, tuple[Callable[[], str], int]] = {
@@ -254,6 +255,9 @@ class Writer:
             "thread": (self.thread, 1),
             "compensation": (self.compensation, 1),
             "show": (self.show, 3),
+            "fanuc": (self.fanuc, 1),
+            "indirect": (self.indirect, 1),
+            "recursion": (self.recursion, 1),
         }
         wanted = only.split(",") if only else list(topics)
         self.codes = [code for code in CODES if "compensation" in wanted or code[:3] not in ("G41", "G42")]
@@ -548,6 +552,39 @@ class Writer:
         self.subs.append(o)
         return text
 
+    def fanuc(self) -> str:
+        """M98, and the subroutine behind the end of the program; seldom one that is met before."""
+        if self.depth > 2:
+            return self.straight()
+        number = self.random.randint(900, 903)
+        if self.chance(0.6):
+            self.depth += 2  # no flow of its own
+            self.behind.append(f"O{number}\n{self.body(3)}\nM99")
+            self.depth -= 2
+        repeat = self.pick(("", "", " L2", " L1", " L0", " L3"))
+        return f"M98 P{number}{repeat}"
+
+    def indirect(self) -> str:
+        """Parameters and labels whose number is computed."""
+        self.label += 1
+        n = self.label
+        inner = self.straight()
+        return self.pick((
+            f"#2=31 ##2={self.value()}", f"#[30 + #1]={self.value()}", "#31=##2", f"#[31.00001]={self.literal()} G0 X#31",
+            f"#3={n}\no[#3] if [{self.pick('0 1')}]\n{inner}\no[{n}] endif", f"o[{n}+0] repeat [2]\n{inner}\no{n} endrepeat",
+            "#[#31]=1", f"#<a>=32 #[#<a>]={self.literal()}", "G[#31-#31] X1", "M[5] F[10+#31*0]", "G0 X[#[5220]] Y##2",
+        ))  # fmt: skip
+
+    def recursion(self) -> str:
+        """A subroutine that calls itself, up to some depth or the deepest there is."""
+        if self.depth > 0:
+            return self.straight()
+        o, i = self.next_label(), self.next_label()
+        deep = self.pick("2 3 5 9 20")
+        after = self.pick(("", "#5=[#5+#1]", "G0 X#1 Y#2", "(debug,#1 #<_call_level> #<_value>)"))
+        return (f"{o} sub\n{self.body(2)}\n{i} if [#1 lt {deep}]\n{o} call [#1+1] [{self.literal()}]\n{i} endif\n{after}\n"
+                f"{o} endsub [#1*2]\n{o} call [{self.pick('0 1 2')}]")  # fmt: skip
+
     # --- cycles, splines, threads, compensation
 
     def cycle(self) -> str:
@@ -671,7 +708,8 @@ class Writer:
         body = "\n".join(self.line() for _ in range(self.random.randint(1, lines)))
         end = self.pick(("M2", "M2", "M2", "M30", "M30", "%", ""))
         first = "%\n" if end == "%" or self.chance(0.05) else ""
-        return f"{first}{start}\n{body}\n{end}\n"
+        behind = "".join(text + "\n" for text in self.behind)
+        return f"{first}{start}\n{body}\n{end}\n{behind}"
 
 
 def probe_line(seed: int) -> str:

@@ -83,7 +83,6 @@ class Flow:
         self.run = run
         self.marks: dict[str, Mark] = {}
         self.stack: list[Level] = []
-        self.uncalled: dict[int, tuple[Text, int]] = {}  # by depth of calls: behind which line an M98 L0 stood
         self.search: Search | None = None
         self.sub = ""  # that is being run
         self.breaking = False
@@ -267,6 +266,8 @@ class Flow:
     def sub_(self, line: OLine, name: str, sought: bool = False) -> None:
         """Met while running: the definition is passed over."""
         self.nothing(line)
+        if self.stack and self.stack[-1].fanuc:
+            raise refuse("a definition in a subroutine of M98", KINDS)
         if name in self.marks:
             raise refuse(f"the definition of {name} stands where the program runs into it", "put it behind M2")
         self.mark(name, "sub")
@@ -283,7 +284,7 @@ class Flow:
     def return_(self, line: OLine, name: str, sought: bool = False) -> None:
         if not self.stack:
             raise refuse(f"{line.keyword.upper()} outside a subroutine")
-        if self.stack[-1].fanuc or len(self.stack) in self.uncalled:
+        if self.stack[-1].fanuc:
             raise refuse("a subroutine of M98 ends with M99")
         self.give_back(line)
         self.leave()
@@ -303,22 +304,10 @@ class Flow:
 
         A name with a path is that of the file; the subroutine in it has the last part of it.
         """
-        run, m = self.run, self.run.state
+        run = self.run
         file, name = name, name.rsplit("/", 1)[-1]
-        if len(self.stack) >= DEEPEST:
-            raise Refusal(F.TOO_DEEP, limit=DEEPEST, what="calls")
         fanuc = values is None
-        kept = None
-        if values is not None:
-            kept = m.numbered[1 : LOCALS + 1]
-            m.numbered[1 : LOCALS + 1] = [*values, *[0.0] * (LOCALS - len(values))]
-        self.stack.append(Level(run.unit, run.next_line, self.sub, kept, m.scope, name, fanuc, m.saved, count))
-        m.calls = len(self.stack)
-        self.uncalled.pop(m.calls, None)
-        counted = m.ini.counts_arguments and values is not None
-        m.scope = {ARGUMENTS: float(len(values or ()))} if counted else {}
-        m.saved = None
-        self.sub = name
+        self.descend(name, values, count)
         known = self.marks.get(name)
         if known is not None:
             if known.kind != ("o" if fanuc else "sub"):
@@ -331,6 +320,22 @@ class Flow:
         found = run.find_file(file)
         if found is not None:
             run.jump(found, 0)
+
+    def descend(self, name: str, values: tuple[float, ...] | None, count: int) -> None:
+        """Go a level of calls deeper, in the subroutine of this name. Raises Refusal."""
+        run, m = self.run, self.run.state
+        if len(self.stack) >= DEEPEST:
+            raise Refusal(F.TOO_DEEP, limit=DEEPEST, what="calls")
+        kept = None
+        if values is not None:
+            kept = m.numbered[1 : LOCALS + 1]
+            m.numbered[1 : LOCALS + 1] = [*values, *[0.0] * (LOCALS - len(values))]
+        self.stack.append(Level(run.unit, run.next_line, self.sub, kept, m.scope, name, values is None, m.saved, count))
+        m.calls = len(self.stack)
+        counted = m.ini.counts_arguments and values is not None
+        m.scope = {ARGUMENTS: float(len(values or ()))} if counted else {}
+        m.saved = None
+        self.sub = name
 
     def enter_found(self, line: OLine, name: str, search: Search) -> None:
         if (line.keyword == "") != search.fanuc:
@@ -366,22 +371,18 @@ class Flow:
     def m98(self, name: str, count: int) -> None:
         """M98: call a bare number, so many times. Raises Refusal.
 
-        L0 calls nothing; but LinuxCNC takes the level it stands in for one of M98, and goes back there at the next M99.
+        L0 calls nothing; but LinuxCNC goes a level deeper all the same, and comes back behind it at the next M99.
         """
         bar_fanuc(self.run)
         if count > 0:
             self.enter(name, None, count)
         else:
-            self.uncalled[len(self.stack)] = (self.run.unit, self.run.next_line)
+            self.descend(name, None, 1)
 
     def m99(self, rest: tuple[int, int]) -> None:
         """M99 in a subroutine: back to M98, or run again. rest: what follows it in the line. Raises Refusal."""
         if rest[0] < rest[1]:
             raise Refusal(F.MISPLACED_WORDS, where=rest, what="M99")
-        after = self.uncalled.pop(len(self.stack), None)
-        if after is not None:
-            self.run.jump(*after)
-            return
         level = self.stack[-1]
         if not level.fanuc:
             raise refuse("a subroutine of CALL ends with ENDSUB")

@@ -243,7 +243,7 @@ class Weaver(Emitter):
         for i, node in enumerate(nodes):
             self.value(depth, f"a{i}", node, at, False)
         self.put(depth, f"loom = routines.get({name!r})")
-        self.leave(depth, at, f"loom is None or len(stack) >= {DEEPEST} or run.repeated >= limit or flow.uncalled")
+        self.leave(depth, at, f"loom is None or len(stack) >= {DEEPEST} or run.repeated >= limit")
         zeros = f"zeros_{len(nodes)}"
         self.space[zeros] = (0.0,) * (LOCALS - len(nodes))
         values = "".join(f"a{i}, " for i in range(len(nodes)))
@@ -273,9 +273,7 @@ class Weaver(Emitter):
         self.put(depth, f"line = {at}")
         for node in nodes:
             self.value(depth, "t", node, at, False)
-        self.leave(
-            depth, at, "m.saved is not None or flow.uncalled or not stack or stack[-1].fanuc or run.repeated >= limit"
-        )
+        self.leave(depth, at, "m.saved is not None or not stack or stack[-1].fanuc or run.repeated >= limit")
         self.put(
             depth,
             f"m.value = {'t' if nodes else '0.0'}",
