@@ -8,10 +8,12 @@ from collections.abc import Callable
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
-from aircut.language.arithmetic import EQUAL
+from aircut.language.arithmetic import EQUAL, round_half_away
 from aircut.language.arithmetic import FUNCTIONS as HOUSE_FUNCTIONS
 from aircut.language.arithmetic import OPERATORS as HOUSE_OPERATORS
 from aircut.language.arithmetic import finite as house_finite
+
+LEAST_WHOLE = 2.0**31
 
 
 def arc_cosine(value: float) -> float:
@@ -35,6 +37,12 @@ def finite(value: float) -> float:
     if value != value:
         raise Refusal(F.NO_VALUE)
     return house_finite(value)
+
+
+def nearest(value: float) -> float:
+    """ROUND, which LinuxCNC does in 32 bits: what is outside of them becomes the lowest of these numbers."""
+    rounded = round_half_away(value) if math.isfinite(value) else math.inf
+    return rounded if abs(rounded) < LEAST_WHOLE else -LEAST_WHOLE
 
 
 def modulo(left: float, right: float) -> float:
@@ -71,7 +79,7 @@ def unequal(left: float, right: float) -> float:
     return 1.0 if abs(left - right) >= EQUAL else 0.0
 
 
-OWN: dict[str, Callable[..., float]] = {"acos": arc_cosine, "asin": arc_sine, "atan": arc_tangent}
+OWN: dict[str, Callable[..., float]] = {"acos": arc_cosine, "asin": arc_sine, "atan": arc_tangent, "round": nearest}
 OWN_OPERATORS: dict[str, Callable[..., float]] = {
     "mod": modulo, "**": power, "/": divide, "eq": equal, "ne": unequal
 }  # fmt: skip

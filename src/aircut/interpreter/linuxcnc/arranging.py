@@ -142,12 +142,12 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
             raise Refusal(F.NO_MOTION_MODE, axes[0])
         motion = modal
         rows.append(modal)
-    elif motion is None and not takers and any(letter in modal.wakes for letter in letters):
+    elif motion is None and not rivals and not (takers and axes) and any(letter in modal.wakes for letter in letters):
         used = {letter for row in rows for letter in row.takes}
         if any(letter in modal.wakes and letter not in used for letter in letters):
             motion = modal
             rows.append(modal)
-    if polar and (takers or any("G0" in row.fits for row in rows)):
+    if polar and takers:
         raise Refusal(F.UNUSED_WORD, "@", word="@ or ^")
     for row in rows:
         mover = written if row.nameless else motion

@@ -181,7 +181,7 @@ def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, again: bool, m
             raise Refusal(F.CYCLE_SPINDLE, code=cycle.name)
         center = m.position[u], m.position[v]
         aside = [sticky.words.get(CENTER_WORDS[i], 0.0) * m.unit for i in (u, v)]
-        overridden = m.feed_override, m.speed_override
+        overridden = tuple(m.followed)
         for do, value in cycle.steps(hole):
             match do:
                 case Do.RAPID:
@@ -207,13 +207,13 @@ def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, again: bool, m
                 case Do.PAUSE:
                     m.out.event("PROGRAM_STOP")
                 case Do.OVERRIDES_OFF:
-                    m.out.event("DISABLE_FEED_OVERRIDE")
-                    m.out.event("DISABLE_SPEED_OVERRIDE", 0)
+                    m.follow_feed(False)
+                    m.follow_speed(False)
                 case Do.OVERRIDES_ON:
                     if overridden[0]:
-                        m.out.event("ENABLE_FEED_OVERRIDE")
+                        m.follow_feed(True)
                     if overridden[1]:
-                        m.out.event("ENABLE_SPEED_OVERRIDE", 0)
+                        m.follow_speed(True)
     end_exact(m, flags)
 
 

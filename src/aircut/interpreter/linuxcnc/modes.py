@@ -98,6 +98,7 @@ def constant_revolutions(m: State, w: Words) -> None:
 
 def orient(m: State, w: Words) -> None:
     """M19: turn the spindle to R degrees, and wait for it with Q. Raises Refusal."""
+    spindle_of(m, w)
     m.spindle = 5
     if "r" in w or "p" in w:
         m.out.event("ORIENT_SPINDLE", 0, w.get("r", 0.0) + m.ini.orient, int(w.get("p", 0.0)))
@@ -216,10 +217,10 @@ def override(feed: bool, speed: bool, on: bool, m: State, w: Words) -> None:
     barred(m)
     if feed:
         m.feed_override = int(on)
-        m.out.event("ENABLE_FEED_OVERRIDE" if on else "DISABLE_FEED_OVERRIDE")
+        m.follow_feed(on)
     if speed:
         m.speed_override = int(on)
-        m.out.event("ENABLE_SPEED_OVERRIDE" if on else "DISABLE_SPEED_OVERRIDE", 0)
+        m.follow_speed(on)
 
 
 def by_p(feed: bool, m: State, w: Words) -> None:

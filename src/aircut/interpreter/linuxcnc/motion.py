@@ -73,7 +73,9 @@ def goal(m: State, w: Words, rapid: bool = False) -> list[float]:
 
 
 def machine_goal(m: State, w: Words) -> list[float]:
-    """G53: axis words in machine coordinates; axes not named stay."""
+    """G53: axis words in machine coordinates; axes not named stay. Raises Refusal for polar words."""
+    if "@" in w or "^" in w:
+        raise Refusal(F.UNUSED_WORD, "@" if "@" in w else "^", word="@ or ^")
     space = m.to_space(m.position)
     for i, letter in NUMBERED_NINE:
         if letter in w:

@@ -40,7 +40,7 @@ def pocket(m: State, slot: int) -> int:
 
 
 def shown(i: int, m: State) -> float:
-    return m.shown(i)
+    return m.beside(i)
 
 
 NAMED = (

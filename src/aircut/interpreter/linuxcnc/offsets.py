@@ -268,7 +268,7 @@ SYSTEM_NAMES = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59
 
 CODES = (
     *(Code(name, "Work system", partial(select, i), Group.SYSTEM, Order.SYSTEM) for i, name in enumerate(SYSTEM_NAMES)),
-    single("G10", "Set offsets or tools", settings, axes=True, takes="lpijkqr", check=check_settings),
+    single("G10", "Set offsets or tools", settings, axes=True, takes="lpijqr", check=check_settings),
     single("G52", "Local offset", set_local, axes=True, needs_axes=True),
     single("G92", "Let the position read as given", set_here, axes=True, needs_axes=True),
     shift("G92.1", "Clear and forget G92", partial(clear_shift, True)),

@@ -73,7 +73,7 @@ def finish(m: State) -> None:
     out.event("SET_FEED_MODE", 0, 0)
     out.event("SET_FEED_RATE", 0.0)
     if not m.feed_override:
-        out.event("ENABLE_FEED_OVERRIDE")
+        m.follow_feed(True)
     out.event("STOP_SPINDLE_TURNING", 0)
     out.event("SET_SPINDLE_MODE", 0, 0.0)
     if m.mist:

@@ -91,6 +91,7 @@ class State(house.State):
         self.arc_refused = False  # right after G40
         self.length_on = False
         self.adaptive = False
+        self.followed = [True, True]  # whether the machine follows the overrides of feed and speed, M50 and M51 or not
         self.hold = True
         self.value = 0.0  # of the last return
         self.value_returned = False
@@ -212,6 +213,17 @@ class State(house.State):
         """The present position on an axis, program units."""
         return self.position[i] / self.unit if i in LINEAR else self.position[i]
 
+    def beside(self, i: int) -> float:
+        """As `shown`; under cutter compensation where the tool is led to, as far as that is known."""
+        held = getattr(self.stages.get("compensation"), "held", None)
+        if held is None:
+            return self.shown(i)
+        stage: Any = self.stages["compensation"]
+        space = self.to_space(self.position)
+        space[stage.u], space[stage.v] = (p + s for p, s in zip(held.path.end, stage.shift, strict=True))
+        place = self.to_program(space)[i]
+        return place / self.unit if i in LINEAR else place
+
     def has_number(self, index: float) -> bool:
         """EXISTS of a numbered parameter."""
         number = round(index) if abs(index) < 1e9 else -1
@@ -249,6 +261,16 @@ class State(house.State):
         """A name that a line sets can be read behind that, as 0."""
         if name not in self.dialect.named:
             (self.scope if self.is_local(name) else self.names).setdefault(name, 0.0)
+
+    # --- overrides
+
+    def follow_feed(self, on: bool) -> None:
+        self.followed[0] = on
+        self.out.event("ENABLE_FEED_OVERRIDE" if on else "DISABLE_FEED_OVERRIDE")
+
+    def follow_speed(self, on: bool) -> None:
+        self.followed[1] = on
+        self.out.event("ENABLE_SPEED_OVERRIDE" if on else "DISABLE_SPEED_OVERRIDE", 0)
 
     # --- tools
 

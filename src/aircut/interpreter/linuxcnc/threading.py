@@ -153,7 +153,7 @@ class Pass:
         self.to(TRAVERSE, depth - self.peak - self.full, z)
         if not self.ends & ENTRY:
             self.to(TRAVERSE, depth, z)
-        m.out.event("DISABLE_FEED_OVERRIDE")
+        m.follow_feed(False)
         if self.ends & ENTRY:
             start(m, slope)
             self.to(FEED, depth - self.full, z)
@@ -167,7 +167,7 @@ class Pass:
             self.to(FEED, depth, end)
         stop(m)
         self.to(TRAVERSE, depth - self.peak - self.full, end)
-        m.out.event("ENABLE_FEED_OVERRIDE")
+        m.follow_feed(True)
 
 
 follow = partial(Code, group=Group.MOTION, order=Order.MOTION, axes=True, modal=True)
