@@ -163,7 +163,7 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
     items = [dialect.items[letter] for letter in letters if letter in ITEMS]
     takes = {letter for row in (*rows, *items) for letter in row.takes}
     for letter in letters:
-        if letter not in AXIS_WORDS and letter not in ITEMS and letter not in takes:
+        if letter not in AXIS_WORDS and letter not in ITEMS and letter not in takes and given(letters, letter):
             raise Refusal(F.UNUSED_WORD, letter, word=letter.upper())
     order = sorted([*rows, *items], key=lambda row: row.order)
     checked = polar or any(row.fits or row.check or row.counts for row in order)

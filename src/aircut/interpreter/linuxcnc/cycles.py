@@ -89,6 +89,8 @@ def run(cycle: Cycle, m: State, w: Words) -> None:
     """Run a cycle at each of its places. Raises Refusal before anything has moved."""
     normal = PLANE_AXES[m.plane][2]
     check(cycle, m, w)
+    if m.plane_code != 170:  # another plane since the block began: polar words lead nowhere
+        w = {letter: value for letter, value in w.items() if letter not in "@^"}
     sticky = remember(cycle, normal, m, w)
     again = m.cycle is not None and m.cycle.name == cycle.name
     hole = measure(sticky, normal, m)

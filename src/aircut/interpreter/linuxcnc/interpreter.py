@@ -15,7 +15,7 @@ from aircut.diagnostics import faults as F
 from aircut.interpreter import path
 from aircut.interpreter.compiling import FAILURES
 from aircut.interpreter.linuxcnc import files, places, starting, unrun
-from aircut.interpreter.linuxcnc.arranging import Steps, arrange, check_values, gather, whole
+from aircut.interpreter.linuxcnc.arranging import FREE, Steps, arrange, check_values, gather, whole
 from aircut.interpreter.linuxcnc.blocks import Block, OLine, parse, read
 from aircut.interpreter.linuxcnc.comments import say
 from aircut.interpreter.linuxcnc.files import Line, Text
@@ -280,7 +280,7 @@ class Interpreter(Run):
         values = self.values(block, line)
         if block.letters:
             names, words = gather(block.letters, values, self.dialect)
-            key = (tuple(names), tuple(words), self.modal.name)
+            key = (tuple(names), tuple(words), self.modal.name, words.get("p") == FREE, words.get("q") == FREE)
             steps = self.steps.get(key)
             if steps is None:
                 steps = self.steps[key] = arrange(names, words, self.modal, self.dialect)

@@ -121,7 +121,7 @@ def check_orient(m: State, w: Words) -> None:
 
 def set_plane(code: int, m: State, w: Words) -> None:
     """G17 to G19.1. Raises Refusal."""
-    if m.cutter and code != m.plane_code:
+    if m.cutter and code != m.plane_code and code % 10 == 0:
         raise Refusal(F.UNDER_COMPENSATION, what="another plane")
     m.plane_code = code
     m.plane, name = PLANES[code]

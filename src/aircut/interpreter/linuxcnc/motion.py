@@ -304,7 +304,7 @@ def cancel(m: State, w: Words) -> None:
 
 def machine_frame(m: State, w: Words) -> None:
     """G53: the axis words of this block are machine coordinates. Raises Refusal."""
-    if m.cutter:
+    if m.cutter and "compensation" in m.stages:  # a radius of 0 bars nothing
         raise Refusal(F.UNDER_COMPENSATION, what="G53")
     m.machine_frame = True
 

@@ -182,15 +182,21 @@ def set_system(here: bool, m: State, w: Words) -> None:
         said(m, "setting coordinate system origin")
 
 
+def stored_shift(m: State) -> list[float]:
+    """The offset of G92 and G52 as the parameters have it: a program may have changed them since."""
+    return m.stored(G92 + 1) if m.numbered[G92] else [0.0] * 9
+
+
 def store_here(m: State, w: Words, first: int, rotation: float) -> None:
     """Origins from which the present position reads as given; X and Y are solved in the rotated frame."""
     space = m.to_space(m.position)
     origin = m.stored(first)
+    shift = stored_shift(m)
     reads = [p - o for p, o in zip(space, origin, strict=True)]
     reads[0], reads[1] = m.turned(reads[0], reads[1], -rotation)
     for i, letter in NUMBERED_NINE:
         if letter in w:
-            reads[i] = m.axis(w, i) + m.shift[i]
+            reads[i] = m.axis(w, i) + shift[i]
     reads[0], reads[1] = m.turned(reads[0], reads[1], rotation)
     for i, letter in NUMBERED_NINE:
         if letter in w or (i < 2 and rotation and ("x" in w or "y" in w)):
@@ -241,7 +247,7 @@ def tool_of_reading(kind: int, m: State, w: Words, named: list[int], offsets: li
     G59.3 without G92 (L11); the system is that of the parameters. X and Y are those along the system's axes.
     """
     first = ORIGINS + STEP * (m.system if kind == 10 else SYSTEMS - 1)
-    shift = m.stored(G92 + 1) if kind == 10 and m.numbered[G92] else [0.0] * 9
+    shift = stored_shift(m) if kind == 10 else [0.0] * 9
     angle = m.numbered[first + 9]
     place, used, kept = (
         [*m.turned(values[0], values[1], -angle), *values[2:]]

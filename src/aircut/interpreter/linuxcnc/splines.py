@@ -104,7 +104,7 @@ def collect(m: State, w: Words) -> None:
         raise Refusal(F.MISSING_WORD, code="G5.2", word="P", meaning="the weight of the control point, above zero")
     if m.spline and not named:
         raise wrong("P without X and Y is for the first control point")
-    if m.feed_mode != 93 and m.gave_feed <= 0.0:
+    if m.feed_mode == 94 and m.gave_feed <= 0.0:
         raise Refusal(F.MISSING_FEED)
     weight = w.get("p", 1.0)
     if not m.spline or m.motion_before != "g5.2":

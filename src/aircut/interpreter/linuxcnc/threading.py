@@ -73,6 +73,7 @@ def rigid_tap(m: State, w: Words) -> None:
     m.out.event("RIGID_TAP", *place[:3])
     go(m, FEED, [*place[:3], *here[3:]], abs(pitch) * m.speed, m.flags | TOLD)
     go(m, FEED, here, abs(pitch) * m.speed, m.flags | TOLD)
+    m.position = [*here[:3], *place[3:]]  # for LinuxCNC the rotary axes have moved
     m.told = told
     stop(m)
 

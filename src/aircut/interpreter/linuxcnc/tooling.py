@@ -69,7 +69,7 @@ def declare(m: State, w: Words) -> None:
         raise Refusal(F.BAD_VALUE, "q", word="Q", value=w["q"], wanted="a tool's number")
     slot = m.slot_of(number)
     m.out.event("CHANGE_TOOL_NUMBER", slot)
-    m.slot = slot
+    m.slot = slot if slot or m.ini.random else -1
     m.tool = number
     m.changed = m.slots[slot]
     m.stale = True

@@ -1,0 +1,72 @@
+"""Differences from LinuxCNC's interpreter that are its own faults, or rounding that decides: each with its reason.
+
+What is behind such a difference in a program is not compared.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable
+from typing import NamedTuple
+
+NUMBER = re.compile(r"-?\d+\.\d+")
+BACK_OFF = (0.254, 0.01)  # mm, inches
+
+
+class Explained(NamedTuple):
+    """One kind of them. applies: to the program, and the first lines of the two listings that differ."""
+
+    name: str
+    reason: str
+    applies: Callable[[str, str, str], bool]
+
+
+def numbers(line: str) -> list[float]:
+    return [float(number) for number in NUMBER.findall(line)]
+
+
+def exchanged(text: str, ours: str, theirs: str) -> bool:
+    return (
+        re.search(r"G0?(84|74)(?!\d)", text, re.IGNORECASE) is not None
+        and "STRAIGHT_FEED" in ours
+        and "STRAIGHT_FEED" in theirs
+        and ours != theirs
+        and sorted(numbers(ours)) == sorted(numbers(theirs))
+    )
+
+
+def huge(text: str, ours: str, theirs: str) -> bool:
+    x, y = numbers(ours), numbers(theirs)
+    same = len(x) == len(y) and NUMBER.sub("#", ours) == NUMBER.sub("#", theirs)
+    return same and all(abs(p - q) <= max(1e-4, 1e-11 * abs(p)) for p, q in zip(x, y, strict=True))
+
+
+def still(text: str, ours: str, theirs: str) -> bool:
+    x, y = numbers(ours), numbers(theirs)
+    if not re.search(r"G38\.", text, re.IGNORECASE) or len(x) != len(y):
+        return False
+    steps = [abs(p - q) for p, q in zip(x, y, strict=True) if abs(p - q) > 1e-4]
+    return all(any(abs(step - off) < 1e-3 for off in BACK_OFF) for step in steps)
+
+
+EXPLAINED = (
+    Explained(
+        "tapping", "outside G17 it exchanges the axes of the feeds of G74 and G84: the tool would move aside", exchanged
+    ),
+    Explained("huge", "numbers above a million millions have no more than sixteen digits that mean something", huge),
+    Explained("still", "a G38 without a way backs off in the direction of a rounding error, or not at all", still),
+)
+MET: Counter[str] = Counter()
+
+
+def explained(text: str, difference: str) -> bool:
+    """Whether a difference, as oracle.differ words it, is one of these; it is counted then."""
+    lines = difference.split("\n")
+    if len(lines) < 3:
+        return False
+    ours, theirs = lines[1].removeprefix("  ours   "), lines[2].removeprefix("  theirs ")
+    kind = next((kind for kind in EXPLAINED if kind.applies(text, ours, theirs)), None)
+    if kind is not None:
+        MET[kind.name] += 1
+    return kind is not None
