@@ -28,6 +28,12 @@ LINE_TOO_LONG = Fault(
 UNCLOSED_COMMENT = Fault("unclosed-comment", "the comment is not closed", "a comment ends with ) on its own line")
 NESTED_COMMENT = Fault("nested-comment", "a comment inside a comment", "use square brackets inside comments")
 STRAY_PARENTHESIS = Fault("stray-parenthesis", ") without a ( before it")
+PYTHON_COMMENT = Fault(
+    "python-comment",
+    "Python in a comment is not run",
+    "LinuxCNC would run it here; what it does to variables or the machine is missing from this run",
+    WARNING,
+)
 MISPLACED_COMMENT = Fault("misplaced-comment", "a comment inside a word", "put the comment before or after the word")
 UNCLOSED_STRING = Fault("unclosed-string", "the string is not closed", 'a string ends with " on the same line')
 MISPLACED_STRING = Fault(

@@ -12,6 +12,7 @@ from aircut.diagnostics import faults as F
 from aircut.interpreter.linuxcnc.state import DEBUGGING, LAST, POSITION, State
 
 ACTIVE = re.compile(r"[ \t]*(msg|debug|print|logopen|logappend|logclose|log|abort)(,|$)", re.IGNORECASE)
+PYTHON = re.compile(r"[ \t]*(py,|py$|pyrun,|pyreload(,|$))", re.IGNORECASE)
 PIECES = re.compile(r"#(\d+)|#<([^>]*)>|%(d)|%(f)|%\.(\d)f|%\.|(.)", re.DOTALL)
 UNKNOWN = "######"
 NEAR_ZERO = 1e-4
@@ -20,6 +21,9 @@ BLANKS = str.maketrans("", "", " \t")
 
 def say(m: State, comment: str) -> None:
     """Carry out the last comment of a block. Raises Refusal."""
+    if PYTHON.match(comment):
+        m.warn(F.PYTHON_COMMENT)
+        return
     active = ACTIVE.match(comment)
     kind = active[1].lower() if active else ""
     if active is None or (kind == "logclose") == bool(active[2]):

@@ -17,6 +17,7 @@ BLANKS = " \t\r\n"
 TRAILING = BLANKS + "\v\f"
 SMALL = {ord(c): None for c in BLANKS} | {c: c + 32 for c in range(ord("A"), ord("Z") + 1)}
 PIECES = re.compile(r"\(([^()]*)\)|(;.*)|([^();]+)|(.)", re.DOTALL)
+PYTHON = re.compile(r";[ \t]*py(run|reload)?,", re.IGNORECASE)  # the only one behind a semicolon that means something
 STRANGE = re.compile(r"[^ -z\x01]")
 
 
@@ -42,6 +43,8 @@ def clean(text: str, length: int) -> Clean:
             elif inner is not None:
                 code.append(COMMENT)
                 comment = inner
+            elif rest is not None and PYTHON.match(rest):
+                comment = rest[1:]
             elif stray == ")":  # found where the line is read further
                 code.append(stray)
             elif stray is not None and rest is None:
