@@ -147,7 +147,7 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
         if any(letter in modal.wakes and letter not in used for letter in letters):
             motion = modal
             rows.append(modal)
-    if polar and takers:
+    if polar and takers and motion is None:
         raise Refusal(F.UNUSED_WORD, "@", word="@ or ^")
     for row in rows:
         mover = written if row.nameless else motion

@@ -201,7 +201,8 @@ class Interpreter(Run):
             self.flow.step(line.oline)
             return
         percent = line.code == "%" and source.raw(self.line).strip() == b"%"
-        if percent and self.percent and not (self.flow.stack and self.flow.search is None):
+        main = self.unit is self.units[self.files[0]]
+        if percent and self.percent and (main or self.flow.search is not None):
             self.close()
         if line.fanuc is not None and (line.fanuc[1] == "98" or self.flow.stack):
             self.fanuc(line, line.fanuc)
