@@ -50,12 +50,18 @@ def still(text: str, ours: str, theirs: str) -> bool:
     return all(any(abs(step - off) < 1e-3 for off in BACK_OFF) for step in steps)
 
 
+def unset(text: str, ours: str, theirs: str) -> bool:
+    spline = re.search(r"G0?5\.3", text, re.IGNORECASE)
+    return spline is not None and re.search(r"G19", text, re.IGNORECASE) is not None and "TRAVERSE(0.0000," in theirs
+
+
 EXPLAINED = (
     Explained(
         "tapping", "outside G17 it exchanges the axes of the feeds of G74 and G84: the tool would move aside", exchanged
     ),
     Explained("huge", "numbers above a million millions have no more than sixteen digits that mean something", huge),
     Explained("still", "a G38 without a way backs off in the direction of a rounding error, or not at all", still),
+    Explained("unset", "behind a G5.3 it takes over an X never set, all but zero: above or below R0 as it happens", unset),
 )
 MET: Counter[str] = Counter()
 

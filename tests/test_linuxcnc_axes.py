@@ -132,6 +132,10 @@ class Writer:
             f"G93 G1 {self.words()} F2\nG94 F100", f"G93 G1 {self.words(1, 'UVWABC')} F3\nG94 F50",
             f"#{pick((5161, 5167, 5169, 5187, 5217, 5227, 5248))}={self.random.uniform(-3, 3):.3f}",
             f"G81 {self.words(1, 'XY')} Z-3 R2\nG80 G1",
+            f"G17.1 G81 {self.words(1, 'UV')} W-3 R2\n{self.words(1, 'UV')}\nG80 G1 G17",
+            f"G18.1 {pick(('G98', 'G99'))} G82 {self.words(1, 'UW')} V-5 R7 P1\n{self.words(1, 'UVWX')}\nG80 G1 G17",
+            f"G19.1 G83 {self.words(1, 'VW')} U-8 R-2 Q3\n{self.words(1, 'VW')}\nG80 G1 G17",
+            f"G17.1 M3 S9 G87 {self.words(1, 'UV')} W-3 R2 I1 J-2 K-1\nG80 G1 G17",
         ))  # fmt: skip
 
     def program(self) -> str:

@@ -10,11 +10,6 @@ Weighted = tuple[float, float, float]  # x, y, weight
 STEPS = 32  # straight pieces a span
 
 
-def bezier(points: Sequence[Point]) -> list[Point]:
-    """Points of a Bézier curve after its first one, the last one included. points: its control points."""
-    return nurbs([(x, y, 1.0) for x, y in points], len(points))
-
-
 def nurbs(points: Sequence[Weighted], order: int) -> list[Point]:
     """Points of a clamped, uniform NURBS curve after its first one, the last one included.
 

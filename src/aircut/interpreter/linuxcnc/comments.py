@@ -15,6 +15,7 @@ ACTIVE = re.compile(r"[ \t]*(msg|debug|print|logopen|logappend|logclose|log|abor
 PYTHON = re.compile(r"[ \t]*(py,|py$|pyrun,|pyreload(,|$))", re.IGNORECASE)
 PIECES = re.compile(r"#(\d+)|#<([^>]*)>|%(d)|%(f)|%\.(\d)f|%\.|(.)", re.DOTALL)
 UNKNOWN = "######"
+LONGEST = 30  # characters of a number
 NEAR_ZERO = 1e-4
 BLANKS = str.maketrans("", "", " \t")
 
@@ -70,7 +71,8 @@ def expanded(m: State, text: str) -> str:
             parts.append(other)
         elif number or name:
             value = value_of(m, number, name)
-            parts.append(UNKNOWN if value is None else f"{0.0 if abs(value) < NEAR_ZERO else value:.{decimals}f}")
+            shown = "" if value is None else f"{0.0 if abs(value) < NEAR_ZERO else value:.{decimals}f}"
+            parts.append(shown if 0 < len(shown) < LONGEST else UNKNOWN)
         else:
             parts.append(".")  # a %. that is no format loses its %
     return "".join(parts)

@@ -30,6 +30,7 @@ from aircut.interpreter.cycles import (
 )
 from aircut.interpreter.drilling import DEPTH, STARTS, Sticky
 from aircut.interpreter.linuxcnc.arranging import given
+from aircut.interpreter.linuxcnc.modes import spindle_of
 from aircut.interpreter.linuxcnc.motion import CENTER_WORDS, FEED, TRAVERSE, go, goal, wrong
 from aircut.interpreter.linuxcnc.state import NINE, State
 from aircut.interpreter.linuxcnc.turning import begin_exact, end_exact
@@ -87,7 +88,7 @@ def bore_back(hole: Hole) -> Iterator[Step]:
 
 def run(cycle: Cycle, m: State, w: Words) -> None:
     """Run a cycle at each of its places. Raises Refusal before anything has moved."""
-    normal = PLANE_AXES[m.plane][2]
+    normal = axes_of(m)[2]
     check(cycle, m, w)
     if m.plane_code != 170:  # another plane since the block began: polar words lead nowhere
         w = {letter: value for letter, value in w.items() if letter not in "@^"}
@@ -105,14 +106,21 @@ def run(cycle: Cycle, m: State, w: Words) -> None:
 
 def check(cycle: Cycle, m: State, w: Words) -> None:
     """Refuse a cycle that the modes or words forbid."""
-    if m.plane_code % 10:
-        raise wrong(f"{cycle.name} needs a plane of X, Y and Z")
+    for letter in NINE[:3] if m.plane_code % 10 else NINE[6:]:
+        if letter in w:
+            raise wrong(f"{letter.upper()} moves in {cycle.name}, whose plane is of the other axes")
     if m.feed_mode == 93:
         raise Refusal(F.CYCLE_INVERSE_TIME, code=cycle.name)
     if m.gave_feed <= 0.0:
         raise Refusal(F.MISSING_FEED)
     if m.cutter:
         raise Refusal(F.CYCLE_COMPENSATION, code=cycle.name)
+
+
+def axes_of(m: State) -> tuple[int, int, int]:
+    """The axes of the plane, and the tool's axis across it."""
+    u, v, normal = PLANE_AXES[m.plane]
+    return (u + 6, v + 6, normal + 6) if m.plane_code % 10 else (u, v, normal)
 
 
 def check_words(cycle: Cycle, m: State, w: Words) -> None:
@@ -143,7 +151,7 @@ def measure(sticky: Sticky, normal: int, m: State) -> Hole:
     """The hole that the words in force mean. Raises Refusal."""
     words = sticky.words
     top, bottom = words["r"], words[DEPTH]
-    middle = words.get(CENTER_WORDS[normal], 0.0)
+    middle = words.get(CENTER_WORDS[normal % 3], 0.0)
     if not m.absolute:
         top += sticky.level
         bottom += top
@@ -157,7 +165,7 @@ def measure(sticky: Sticky, normal: int, m: State) -> Hole:
 
 def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, again: bool, m: State, w: Words) -> None:
     """Move: to each place, down to R, and the steps there. Raises Refusal where P, Q, I, J or K is missing or wrong."""
-    u, v, normal = PLANE_AXES[m.plane]
+    u, v, normal = axes_of(m)
     across = {letter: value for letter, value in w.items() if letter != NINE[normal]}
     height = m.position[normal] / m.unit
     if sticky.level < hole.top:
@@ -169,6 +177,8 @@ def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, again: bool, m
         for letter in cycle.needs:
             if not given(w, letter):
                 raise Refusal(F.MISSING_WORD, code=cycle.name, word=letter.upper(), meaning="")
+    if cycle.steps is tap:
+        spindle_of(m, w)
     for at in range(repeats):
         if at or height <= hole.top:
             height = hole.clear
@@ -182,7 +192,7 @@ def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, again: bool, m
         if cycle.turning and m.spindle not in cycle.turning:
             raise Refusal(F.CYCLE_SPINDLE, code=cycle.name)
         center = m.position[u], m.position[v]
-        aside = [sticky.words.get(CENTER_WORDS[i], 0.0) * m.unit for i in (u, v)]
+        aside = [sticky.words.get(CENTER_WORDS[i % 3], 0.0) * m.unit for i in (u, v)]
         overridden = tuple(m.followed)
         for do, value in cycle.steps(hole):
             match do:
@@ -231,7 +241,7 @@ def by_hand(m: State, height: float) -> None:
 def to_height(m: State, kind: int, height: float) -> None:
     """Move along the tool's axis to a height, program units."""
     place = m.position[:]
-    place[PLANE_AXES[m.plane][2]] = height * m.unit
+    place[axes_of(m)[2]] = height * m.unit
     speed = m.gave_feed * m.unit * (m.speed if m.feed_mode == 95 else 1.0)
     go(m, kind, place, speed if kind == FEED else 0.0)
 

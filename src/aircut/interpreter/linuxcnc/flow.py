@@ -386,6 +386,7 @@ class Flow:
         level = self.stack[-1]
         if not level.fanuc:
             raise refuse("a subroutine of CALL ends with ENDSUB")
+        self.run.state.value, self.run.state.value_returned = 0.0, False
         if level.passes > 1:
             restore_call(self.run)
             self.stack[-1] = level._replace(passes=level.passes - 1)

@@ -32,7 +32,7 @@ def said(m: State, text: str) -> None:
 def set_feed_mode(mode: int, m: State, w: Words) -> None:
     """G93, G94, G95: F is due again."""
     text = {93: "inverse time", 94: "units per minute", 95: "units per revolution"}[mode]
-    spindle = spindle_of(m, w, mode == 95)
+    spindle = spindle_of(m, w)
     said(m, f"feed mode set to {text}")
     m.feed_mode = mode
     m.inverse_time = mode == 93
@@ -58,26 +58,23 @@ def feed_word(m: State, w: Words) -> None:
 # --- spindle
 
 
-def spindle_of(m: State, w: Words, used: bool = True) -> int:
-    """The $ word: there is one spindle, 0; -1 is all of them. Raises Refusal."""
-    if not used or "$" not in w:
-        return 0
-    value = w["$"]
-    if abs(value - round(value)) > 1e-4 or round(value) not in (0, -1):
-        raise Refusal(F.BAD_VALUE, "$", word="$", value=value, wanted="the machine has one spindle, 0")
+def spindle_of(m: State, w: Words, every: bool = False) -> int:
+    """The $ word, of which the whole part counts: there is one spindle, 0. every: or -1, all of them. Raises Refusal."""
+    if int(w.get("$", 0.0)) not in ((0, -1) if every else (0,)):
+        raise Refusal(F.BAD_VALUE, "$", word="$", value=w["$"], wanted="the machine has one spindle, 0")
     return 0
 
 
 def speed_word(m: State, w: Words) -> None:
     """S."""
-    spindle_of(m, w)
+    spindle_of(m, w, every=True)
     m.speed = w["s"]
     m.out.event("SET_SPINDLE_SPEED", 0, m.speed)
 
 
 def turn_spindle(direction: int, m: State, w: Words) -> None:
     """M3, M4, M5."""
-    spindle_of(m, w)
+    spindle_of(m, w, every=True)
     m.spindle = direction
     name = {3: "START_SPINDLE_CLOCKWISE", 4: "START_SPINDLE_COUNTERCLOCKWISE", 5: "STOP_SPINDLE_TURNING"}[direction]
     m.out.event(name, 0)
@@ -224,8 +221,9 @@ def override(feed: bool, speed: bool, on: bool, m: State, w: Words) -> None:
 
 
 def by_p(feed: bool, m: State, w: Words) -> None:
-    """M50, M51: P0 is off; without P, on."""
-    spindle_of(m, w, not feed)
+    """M50, M51: P0 is off; without P, on. Of the spindles of M51's $ LinuxCNC's interpreter knows none. Raises Refusal."""
+    if "$" in w and not feed:
+        raise Refusal(F.BAD_VALUE, "$", word="$", value=w["$"], wanted="M51 is for the one spindle that there is")
     override(feed, not feed, w.get("p", 1.0) != 0.0, m, w)
 
 

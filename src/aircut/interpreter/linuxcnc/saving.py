@@ -45,7 +45,7 @@ def snapshot(m: State, returning: bool = False) -> Saved:
         "feed mode": f"g{m.feed_mode}",
         "spindle mode": "g96" if m.css else "g97",
         "system": SYSTEM_CODES[m.system],
-        "length": "g43" if m.length_on else "g49",
+        "length": "g43" if any(m.tool_offset) else "g49",
         "retract": f"g{m.retract}",
         "arc distance": "g90.1" if m.arc_absolute else "g91.1",
         "diameter": "g7" if m.diameter else "g8",

@@ -12,7 +12,7 @@ from functools import partial
 from aircut.canon import TOLD
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
-from aircut.geometry.splines import Point, bezier, nurbs
+from aircut.geometry.splines import Point, nurbs
 from aircut.interpreter.linuxcnc.motion import FEED, go, goal, wrong
 from aircut.interpreter.linuxcnc.state import State
 from aircut.interpreter.table import Code, Group, Order, Words
@@ -77,7 +77,7 @@ def cubic(m: State, w: Words) -> None:
         (end[0] + m.spline_end[0], end[1] + m.spline_end[1]),
         (end[0], end[1]),
     ]
-    trace(m, len(points), bezier(points), end)
+    behind_collected(m, points, end)
 
 
 def quadratic(m: State, w: Words) -> None:
@@ -88,7 +88,20 @@ def quadratic(m: State, w: Words) -> None:
     start = m.position
     end = goal(m, w)
     points = [(start[0], start[1]), (start[0] + m.length(w, "i"), start[1] + m.length(w, "j")), (end[0], end[1])]
-    trace(m, len(points), bezier(points), end)
+    behind_collected(m, points, end)
+
+
+def behind_collected(m: State, points: list[tuple[float, float]], end: list[float]) -> None:
+    """Run a Bézier curve. Points that a G5.2 left without its G5.3 stand before its own, and bend it with them."""
+    all_points = [*collected(m), *((x, y, 1.0) for x, y in points)]
+    trace(m, len(all_points), nurbs(all_points, len(points)), end)
+
+
+def collected(m: State) -> list[tuple[float, float, float]]:
+    """Points and weights of G5.2 so far, mm; there are none any more then."""
+    points = [(x * m.unit, y * m.unit, weight if weight > 0.0 else 1.0) for x, y, weight in m.spline]
+    m.spline = []
+    return points
 
 
 def collect(m: State, w: Words) -> None:
@@ -122,8 +135,7 @@ def run_collected(m: State, w: Words) -> None:
         raise wrong("G5.3 without G5.2 before")
     if len(m.spline) < m.spline_order:
         raise wrong(f"a spline of order {m.spline_order} needs as many points; there are {len(m.spline)}")
-    points = [(x * m.unit, y * m.unit, weight if weight > 0.0 else 1.0) for x, y, weight in m.spline]
-    m.spline = []
+    points = collected(m)
     end = [points[-1][0], points[-1][1], *m.position[2:]]
     trace(m, len(points), nurbs(points, m.spline_order), end)
 

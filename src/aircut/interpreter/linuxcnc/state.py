@@ -72,6 +72,7 @@ class State(house.State):
             self.slots[0] = UNUSED
         self.show_tool()
         self.slot = min(1, len(self.slots) - 1)  # of the tool in the spindle, before any change
+        self.spindle_pocket = -1  # where the tool of the last M6 came from
         self.changed: Tool | None = None  # by M6 or M61 of this block
         self.selected_slot = 0
         self.gave_feed = 0.0  # the F word in force
@@ -89,7 +90,6 @@ class State(house.State):
         self.cutter = 0  # 0, 41, 42
         self.indexed = False  # this block's G0 has turned a locked axis
         self.arc_refused = False  # right after G40
-        self.length_on = False
         self.adaptive = False
         self.followed = [True, True]  # whether the machine follows the overrides of feed and speed, M50 and M51 or not
         self.hold = True

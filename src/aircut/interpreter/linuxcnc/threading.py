@@ -21,8 +21,9 @@ STANDING = 5
 ENTRY, EXIT = 1, 2  # bits of G76's L
 
 
-def follows(m: State, what: str) -> None:
+def follows(m: State, w: Words, what: str) -> None:
     """What all of them need. Raises Refusal."""
+    spindle_of(m, w)
     if m.spindle == STANDING:
         raise wrong(f"{what} needs a turning spindle", "program S and M3")
 
@@ -51,7 +52,7 @@ def check_synchronized(m: State, w: Words) -> None:
 
 def synchronized(m: State, w: Words) -> None:
     """G33: K is the way for a turn of the spindle. Raises Refusal."""
-    follows(m, "G33")
+    follows(m, w, "G33")
     if beside(m, w):
         return
     pitch = m.length(w, "k")
@@ -63,7 +64,7 @@ def synchronized(m: State, w: Words) -> None:
 
 def rigid_tap(m: State, w: Words) -> None:
     """G33.1: down and back, the spindle turning the other way; the position stays. Raises Refusal."""
-    follows(m, "G33.1")
+    follows(m, w, "G33.1")
     if beside(m, w):
         return
     place = goal(m, w)
@@ -80,7 +81,7 @@ def rigid_tap(m: State, w: Words) -> None:
 
 def thread(m: State, w: Words) -> None:
     """G76: passes along Z, each deeper than the one before. Raises Refusal."""
-    follows(m, "G76")
+    follows(m, w, "G76")
     if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="G76")
     half = 2.0 if m.diameter else 1.0
@@ -109,7 +110,6 @@ def thread(m: State, w: Words) -> None:
 
 def check_thread(m: State, w: Words, first: float, full: float) -> None:
     """Raises Refusal."""
-    spindle_of(m, w)
     for letter in "abc":
         if letter in w and goal(m, w)["abc".index(letter) + 3] != m.position["abc".index(letter) + 3]:
             raise Refusal(F.CYCLE_ROTARY, letter, code="G76", axis=letter.upper())

@@ -8,12 +8,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
+from msgspec.structs import replace
+
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.linuxcnc.arranging import given
 from aircut.interpreter.linuxcnc.motion import home_of, index_and_go, wrong
 from aircut.interpreter.linuxcnc.state import G30, NUMBERED_NINE, State
 from aircut.interpreter.table import Code, Group, Order, Words
+from aircut.machine.tools import EMPTY
 
 
 def select_tool(m: State, w: Words) -> None:
@@ -42,7 +45,16 @@ def change(m: State, w: Words) -> None:
         out_of_the_way(m, home_of(m, G30))
     m.out.event("CHANGE_TOOL", slot)
     m.slots[0] = m.slots[slot]
+    if slot:
+        m.spindle_pocket = m.slots[slot].slot
+    recall_pocket(m)
     load(m, slot)
+
+
+def recall_pocket(m: State) -> None:
+    """G10 makes the spindle's entry that of the tool's own slot; a tool change forgets the pocket of that again."""
+    if m.slots[0] is not EMPTY and not m.ini.random:
+        m.slots[0] = replace(m.slots[0], slot=m.spindle_pocket)
 
 
 def out_of_the_way(m: State, place: list[float]) -> None:
@@ -69,7 +81,8 @@ def declare(m: State, w: Words) -> None:
         raise Refusal(F.BAD_VALUE, "q", word="Q", value=w["q"], wanted="a tool's number")
     slot = m.slot_of(number)
     m.out.event("CHANGE_TOOL_NUMBER", slot)
-    m.slot = slot if slot or m.ini.random else -1
+    recall_pocket(m)
+    m.slot = slot
     m.tool = number
     m.changed = m.slots[slot]
     m.stale = True
@@ -106,14 +119,12 @@ def of_tool(m: State, w: Words) -> list[float]:
 def tool_length(m: State, w: Words) -> None:
     """G43. Raises Refusal."""
     bar(m)
-    m.length_on = True
     put_offset(m, of_tool(m, w))
 
 
 def dynamic_length(m: State, w: Words) -> None:
     """G43.1: offsets as given. Raises Refusal."""
     bar(m)
-    m.length_on = True
     offset = m.tool_offset[:]
     for i, letter in NUMBERED_NINE:
         if letter in w:
@@ -128,14 +139,12 @@ def added_length(m: State, w: Words) -> None:
         raise wrong("G43.2 takes no axis words", "its offset is that of the tool H")
     if "h" not in w:
         raise wrong("G43.2 needs H")
-    m.length_on = True
     put_offset(m, [a + b for a, b in zip(m.tool_offset, of_tool(m, w), strict=True)])
 
 
 def no_length(m: State, w: Words) -> None:
     """G49. Raises Refusal."""
     bar(m)
-    m.length_on = False
     put_offset(m, [0.0] * 9)
 
 
