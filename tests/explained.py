@@ -61,7 +61,9 @@ EXPLAINED = (
     ),
     Explained("huge", "numbers above a million millions have no more than sixteen digits that mean something", huge),
     Explained("still", "a G38 without a way backs off in the direction of a rounding error, or not at all", still),
-    Explained("unset", "behind a G5.3 it takes over an X never set, all but zero: above or below R0 as it happens", unset),
+    Explained(
+        "unset", "behind a G5.3 it takes over an X never set, all but zero: above or below R0 as it happens", unset
+    ),
 )
 MET: Counter[str] = Counter()
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
+from typing import Any
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
@@ -30,6 +31,25 @@ def arc_sine(value: float) -> float:
 
 def arc_tangent(y: float, x: float) -> float:
     return math.degrees(math.atan2(y, x))
+
+
+class NoNumber(float):
+    """What is no number, as the argument or value of a call. LinuxCNC refuses it where it is read."""
+
+    def __new__(cls) -> NoNumber:
+        return super().__new__(cls, math.nan)
+
+    def refused(self, *others: object) -> Any:
+        raise ValueError
+
+    __lt__ = __le__ = __gt__ = __ge__ = __eq__ = __ne__ = __bool__ = refused
+    __add__ = __radd__ = __sub__ = __rsub__ = refused
+    __hash__ = float.__hash__
+
+
+def marked(value: float) -> float:
+    """A value of a call, which may be no number."""
+    return value if value == value else NoNumber()
 
 
 def finite(value: float) -> float:

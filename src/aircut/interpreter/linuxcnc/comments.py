@@ -72,6 +72,7 @@ def expanded(m: State, text: str) -> str:
         elif number or name:
             value = value_of(m, number, name)
             shown = "" if value is None else f"{0.0 if abs(value) < NEAR_ZERO else value:.{decimals}f}"
+            shown = "-nan" if shown == "nan" else shown
             parts.append(shown if 0 < len(shown) < LONGEST else UNKNOWN)
         else:
             parts.append(".")  # a %. that is no format loses its %

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.interpreter.linuxcnc.arithmetic import marked
 from aircut.interpreter.linuxcnc.arranging import whole
 from aircut.interpreter.linuxcnc.blocks import OLine, arguments, brackets
 from aircut.interpreter.linuxcnc.places import EVALUATION, explained
@@ -27,6 +28,9 @@ DEEPEST = 9  # calls in calls
 LOOPS = ("while", "do")
 KINDS = "O… SUB is for CALL, a bare O… for M98"
 BRANCHES = ("elseif", "else", "endif")
+OPENERS = ("if", "while", "repeat")
+PARTNERS = dict.fromkeys(BRANCHES, ("if",)) | dict.fromkeys(("break", "continue"), LOOPS)
+PARTNERS |= {"endwhile": ("while",), "endrepeat": ("repeat",)}
 
 
 @dataclass
@@ -131,10 +135,25 @@ class Flow:
         if line.keyword in ("", "sub") and search.kinds == ("endsub",):
             raise refuse("a subroutine inside a subroutine")
         label = name if line.keyword == "endsub" else self.scoped(name)
-        if label != search.label or line.keyword not in search.kinds:
+        if label != search.label:
             return
+        if line.keyword not in search.kinds:
+            self.crossed(line, label)
+            return
+        if line.keyword == "endwhile":
+            self.opened(label, ("while",), line)
         self.search = None
         self.WORDS[line.keyword](self, line, name, True)
+
+    def crossed(self, line: OLine, label: str) -> None:
+        """An O-word of the label that is sought, but of another kind: LinuxCNC heeds it all the same. Raises Refusal."""
+        if line.keyword in OPENERS:
+            self.mark(label, line.keyword)
+        elif line.keyword in PARTNERS:
+            self.opened(label, PARTNERS[line.keyword], line)
+            self.breaking = self.breaking or line.keyword == "break"
+        elif line.keyword == "do":
+            self.search = None
 
     def values(self, line: OLine, least: int, most: int) -> tuple[float, ...]:
         known = self.run.argument_cache.get(line)
@@ -293,7 +312,7 @@ class Flow:
         """The value behind RETURN or ENDSUB."""
         values = self.values(line, 0, 1)
         m = self.run.state
-        m.value = values[0] if values else 0.0
+        m.value = marked(values[0]) if values else 0.0
         m.value_returned = bool(values)
 
     def call_(self, line: OLine, name: str, sought: bool = False) -> None:
@@ -329,7 +348,7 @@ class Flow:
         kept = None
         if values is not None:
             kept = m.numbered[1 : LOCALS + 1]
-            m.numbered[1 : LOCALS + 1] = [*values, *[0.0] * (LOCALS - len(values))]
+            m.numbered[1 : LOCALS + 1] = [*map(marked, values), *[0.0] * (LOCALS - len(values))]
         self.stack.append(Level(run.unit, run.next_line, self.sub, kept, m.scope, name, values is None, m.saved, count))
         m.calls = len(self.stack)
         counted = m.ini.counts_arguments and values is not None

@@ -59,7 +59,7 @@ def feed_word(m: State, w: Words) -> None:
 
 
 def spindle_of(m: State, w: Words, every: bool = False) -> int:
-    """The $ word, of which the whole part counts: there is one spindle, 0. every: or -1, all of them. Raises Refusal."""
+    """The $ word, its whole part: there is one spindle, 0. every: or -1, all of them. Raises Refusal."""
     if int(w.get("$", 0.0)) not in ((0, -1) if every else (0,)):
         raise Refusal(F.BAD_VALUE, "$", word="$", value=w["$"], wanted="the machine has one spindle, 0")
     return 0
@@ -129,11 +129,13 @@ def set_units(unit: float, m: State, w: Words) -> None:
     """G20, G21: lengths are kept in mm, so nothing is turned.
 
     But the tool's offset and G64's tolerances keep their numbers, not their lengths: LinuxCNC forgets to turn them.
+    It turns the position, and the last bit that this costs can decide whether a cycle moves to its height again.
     """
-    ratio = unit / m.unit
-    m.blend *= ratio
-    m.thinning *= ratio
-    m.tool_offset = [t * ratio if i in LINEAR else t for i, t in enumerate(m.tool_offset)]
+    if unit > m.unit:
+        m.position = [p * (1.0 / INCH) * INCH if i in LINEAR else p for i, p in enumerate(m.position)]
+    m.blend = m.blend / m.unit * unit
+    m.thinning = m.thinning / m.unit * unit
+    m.tool_offset = [t / m.unit * unit if i in LINEAR else t for i, t in enumerate(m.tool_offset)]
     m.fence()
     m.unit = unit
     m.feed = m.gave_feed * unit
@@ -221,7 +223,7 @@ def override(feed: bool, speed: bool, on: bool, m: State, w: Words) -> None:
 
 
 def by_p(feed: bool, m: State, w: Words) -> None:
-    """M50, M51: P0 is off; without P, on. Of the spindles of M51's $ LinuxCNC's interpreter knows none. Raises Refusal."""
+    """M50, M51: P0 is off; without P, on. M51 with $ LinuxCNC refuses, whatever it says. Raises Refusal."""
     if "$" in w and not feed:
         raise Refusal(F.BAD_VALUE, "$", word="$", value=w["$"], wanted="M51 is for the one spindle that there is")
     override(feed, not feed, w.get("p", 1.0) != 0.0, m, w)

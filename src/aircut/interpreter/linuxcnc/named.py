@@ -86,7 +86,7 @@ NAMED = (
         NamedParameter(f"_abs_{a}", f"machine position {a.upper()}", partial(machine, i))
         for i, a in enumerate(NINE[:6])
     ),
-    value("_value", "of the last return", lambda m: m.value),
+    NamedParameter("_value", "of the last return", lambda m: m.value),  # as it is, no number included
     flag("_value_returned", "the last return had a value", lambda m: m.value_returned),
     value("_task", "0 in the stand-alone interpreter", lambda m: 0.0),
     value("_call_level", "depth of calls", lambda m: m.calls),

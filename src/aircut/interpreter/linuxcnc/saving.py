@@ -1,7 +1,7 @@
 """Saved modes: M70 to M73.
 
-Restoring runs blocks of codes like any other: units first, then what differs, in order, then
-the M codes one by one. Source: the canonical listing, section 14.
+Restoring runs blocks of codes like any other: units first, then what differs, in order, with the first
+of the M codes; then the other M codes one by one. Source: the canonical listing, section 14.
 """
 
 from __future__ import annotations
@@ -100,13 +100,14 @@ def bring_back(run: Interpreter, saved: Saved) -> bool:
     if saved.modes["path"] == "g64" and ("g64" in names or now.blending != saved.blending):
         names = [*dict.fromkeys((*names, "g64"))]
         words["p"], words["q"] = saved.blending
+    names += switches(saved, now)
+    others = [name for name in names if name.startswith("m")][1:]
     if names or words:
-        run.carry_out(names, words)
-    switched = switches(saved, now)
-    for name in switched:
+        run.carry_out([name for name in names if name not in others], words)
+    for name in others:
         run.carry_out([name], {})
     m.out.line = line
-    return bool(differs or names or words or switched)
+    return bool(differs or names or words)
 
 
 def switches(saved: Saved, now: Saved) -> list[str]:

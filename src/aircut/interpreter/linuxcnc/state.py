@@ -72,7 +72,8 @@ class State(house.State):
             self.slots[0] = UNUSED
         self.show_tool()
         self.slot = min(1, len(self.slots) - 1)  # of the tool in the spindle, before any change
-        self.spindle_pocket = -1  # where the tool of the last M6 came from
+        #: Where the tool of the last M6 came from.
+        self.spindle_pocket = -1 if self.slots[0] is EMPTY else self.slots[0].slot
         self.changed: Tool | None = None  # by M6 or M61 of this block
         self.selected_slot = 0
         self.gave_feed = 0.0  # the F word in force

@@ -22,7 +22,7 @@ from aircut.interpreter.linuxcnc.flow import DEEPEST, Level
 from aircut.interpreter.linuxcnc.looms import ASKED, Loom, Modes, fail, modes, steady
 from aircut.interpreter.linuxcnc.state import ARGUMENTS, LOCALS
 from aircut.interpreter.looms import LINEAR_PLACE, template
-from aircut.language.expressions import Expression
+from aircut.language.expressions import Expression, Number
 
 if TYPE_CHECKING:
     from aircut.interpreter.linuxcnc import files
@@ -119,12 +119,22 @@ class Weaver(Emitter):
         self.mark(depth, at, "while")
         self.put(depth, "while True:", f"    line = {at}")
         self.value(depth + 1, "t", self.single(at), at, False)
-        self.put(depth + 1, "if t == 0.0: break")
+        crossed = ["    flow.breaking = True"] if self.breaks(at, label) else []
+        self.put(depth + 1, "if t == 0.0:", *crossed, "    break")
         return self.looped(depth, at, "endwhile", label)
+
+    def breaks(self, at: int, label: str) -> bool:
+        """Whether the loop of this label has a BREAK behind a line. Passed over, LinuxCNC remembers it."""
+        end = next((line for line in sorted(self.words) if line > at and self.closes(line, label)), at)
+        return any(
+            word.keyword == "break" and word.label == label for line, word in self.words.items() if at < line < end
+        )
 
     def repeat(self, depth: int, at: int) -> int:
         """A REPEAT; returns the line after its ENDREPEAT."""
         label = str(self.words[at].label)
+        if any(word.label == label and word.keyword in ("break", "continue") for word in self.words.values()):
+            raise Unwoven  # they are refused, even passed over
         k = self.mark(depth, at, "repeat")
         self.put(depth, "while True:", f"    line = {at}", f"    if {k}.taken: {k}.left -= 1", "    else:")
         self.value(depth + 2, "t", self.single(at), at, False)
@@ -185,6 +195,8 @@ class Weaver(Emitter):
         if not self.loops or self.loops[-1] != word.label or word.rest or self.words[start].keyword != "while":
             self.leave(depth, at)
             return at + 1
+        if self.breaks(at, str(word.label)):
+            self.put(depth, "flow.breaking = True")
         self.back(depth, at, start)
         self.put(depth, "continue")
         return at + 1
@@ -243,7 +255,8 @@ class Weaver(Emitter):
         for i, node in enumerate(nodes):
             self.value(depth, f"a{i}", node, at, False)
         self.put(depth, f"loom = routines.get({name!r})")
-        self.leave(depth, at, f"loom is None or len(stack) >= {DEEPEST} or run.repeated >= limit")
+        numbers = "".join(f" or a{i} != a{i}" for i, node in enumerate(nodes) if not isinstance(node, Number))
+        self.leave(depth, at, f"loom is None or len(stack) >= {DEEPEST} or run.repeated >= limit{numbers}")
         zeros = f"zeros_{len(nodes)}"
         self.space[zeros] = (0.0,) * (LOCALS - len(nodes))
         values = "".join(f"a{i}, " for i in range(len(nodes)))
@@ -273,7 +286,8 @@ class Weaver(Emitter):
         self.put(depth, f"line = {at}")
         for node in nodes:
             self.value(depth, "t", node, at, False)
-        self.leave(depth, at, "m.saved is not None or not stack or stack[-1].fanuc or run.repeated >= limit")
+        number = " or t != t" if nodes else ""
+        self.leave(depth, at, f"m.saved is not None or not stack or stack[-1].fanuc or run.repeated >= limit{number}")
         self.put(
             depth,
             f"m.value = {'t' if nodes else '0.0'}",
