@@ -51,8 +51,16 @@ def still(text: str, ours: str, theirs: str) -> bool:
 
 
 def unset(text: str, ours: str, theirs: str) -> bool:
-    spline = re.search(r"G0?5\.3", text, re.IGNORECASE)
-    return spline is not None and re.search(r"G19", text, re.IGNORECASE) is not None and "TRAVERSE(0.0000," in theirs
+    if not re.search(r"G0?5(\.[13])?(?!\d)", text, re.IGNORECASE):
+        return False
+    level = re.search(r"G19", text, re.IGNORECASE) is not None and "TRAVERSE(0.0000," in theirs
+    return level or ("@" in text and "ON_RESET" in ours and "STRAIGHT_" in theirs)
+
+
+def turning(text: str, ours: str, theirs: str) -> bool:
+    trigonometry = re.search(r"(sin|cos|tan)\[[^()\n]*(\*\*|exp)", text, re.IGNORECASE)
+    x, y = numbers(ours), numbers(theirs)
+    return trigonometry is not None and len(x) == len(y) and NUMBER.sub("#", ours) == NUMBER.sub("#", theirs)
 
 
 EXPLAINED = (
@@ -61,9 +69,8 @@ EXPLAINED = (
     ),
     Explained("huge", "numbers above a million millions have no more than sixteen digits that mean something", huge),
     Explained("still", "a G38 without a way backs off in the direction of a rounding error, or not at all", still),
-    Explained(
-        "unset", "behind a G5.3 it takes over an X never set, all but zero: above or below R0 as it happens", unset
-    ),
+    Explained("unset", "behind a spline it takes over an X and Y never set, all but zero, which then decide", unset),
+    Explained("turning", "the angles of SIN, COS and TAN of huge powers: it calculates them in 80 bits", turning),
 )
 MET: Counter[str] = Counter()
 

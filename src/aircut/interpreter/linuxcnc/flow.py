@@ -146,7 +146,7 @@ class Flow:
         self.WORDS[line.keyword](self, line, name, True)
 
     def crossed(self, line: OLine, label: str) -> None:
-        """An O-word of the label that is sought, but of another kind: LinuxCNC heeds it all the same. Raises Refusal."""
+        """An O-word of the label that is sought, but of another kind: LinuxCNC heeds it. Raises Refusal."""
         if line.keyword in OPENERS:
             self.mark(label, line.keyword)
         elif line.keyword in PARTNERS:

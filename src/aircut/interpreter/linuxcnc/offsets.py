@@ -74,6 +74,9 @@ def set_here(m: State, w: Words) -> None:
         if letter in w:
             shift[i] = m.position[i] + shift[i] - m.axis(w, i)
     put_shift(m, shift)
+    for i, letter in NUMBERED_NINE:
+        if letter in w:
+            m.position[i] = m.axis(w, i)  # to the last bit
 
 
 def set_local(m: State, w: Words) -> None:
@@ -170,9 +173,8 @@ def set_system(here: bool, m: State, w: Words) -> None:
         moved[0], moved[1] = m.turned(moved[0], moved[1], m.rotation)
         moved = [p + o for p, o in zip(moved, m.origin, strict=True)]
         m.load_system()
-        if (
-            not here or turned
-        ):  # LinuxCNC forgets here that G92's offset turns too: the machine's position does not stay
+        #: LinuxCNC forgets here that G92's offset turns too: the machine's position does not stay.
+        if not here or turned or m.rotation == 0.0:
             moved = [p - o for p, o in zip(moved, m.origin, strict=True)]
             moved[0], moved[1] = m.turned(moved[0], moved[1], -m.rotation)
             m.position = moved

@@ -163,10 +163,10 @@ class State(house.State):
 
     def set_shift(self, shift: list[float]) -> None:
         """Put G92's offset in force; the machine stays."""
-        here = self.to_space(self.position)
+        steps = [b - n for b, n in zip(self.shift, shift, strict=True)]
         self.told = [t + b - n for t, b, n in zip(self.told, self.shift, shift, strict=True)]
+        self.position = [p + step for p, step in zip(self.position, steps, strict=True)]
         self.shift = shift
-        self.position = self.to_program(here)
 
     def stored(self, first: int) -> list[float]:
         """Nine parameters of lengths and angles, mm and degrees."""
