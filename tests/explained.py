@@ -63,6 +63,11 @@ def turning(text: str, ours: str, theirs: str) -> bool:
     return trigonometry is not None and len(x) == len(y) and NUMBER.sub("#", ours) == NUMBER.sub("#", theirs)
 
 
+def declared(text: str, ours: str, theirs: str) -> bool:
+    beside = re.search(r"G4[12]", text, re.IGNORECASE) is not None
+    return beside and "CHANGE_TOOL_NUMBER" in theirs and ("STRAIGHT_" in ours or "ARC_FEED" in ours)
+
+
 EXPLAINED = (
     Explained(
         "tapping", "outside G17 it exchanges the axes of the feeds of G74 and G84: the tool would move aside", exchanged
@@ -70,6 +75,7 @@ EXPLAINED = (
     Explained("huge", "numbers above a million millions have no more than sixteen digits that mean something", huge),
     Explained("still", "a G38 without a way backs off in the direction of a rounding error, or not at all", still),
     Explained("unset", "behind a spline it takes over an X and Y never set, all but zero, which then decide", unset),
+    Explained("declared", "M61 beside a contour: the end of the move that it waits with is lost", declared),
     Explained("turning", "the angles of SIN, COS and TAN of huge powers: it calculates them in 80 bits", turning),
 )
 MET: Counter[str] = Counter()

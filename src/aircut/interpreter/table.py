@@ -120,6 +120,7 @@ class Code(NamedTuple):
     weak: bool = False  # gives way to another code of its group in the block
     wakes: str = ""  # letters that make it run while modal, beside the axis words
     fits: tuple[str, ...] = ()  # motions that it may stand beside, if not all
+    bars: tuple[str, ...] = ()  # motions that may not be written beside it
     alone: str = ""  # the code that the axis words beside it mean
     cycle: bool = False  # a canned cycle: what State.cycle holds stays in force
     sole: bool = False  # the only G or M code of its block; every letter is its argument

@@ -33,23 +33,23 @@ def arc_tangent(y: float, x: float) -> float:
     return math.degrees(math.atan2(y, x))
 
 
-class NoNumber(float):
-    """What is no number, as the argument or value of a call. LinuxCNC refuses it where it is read."""
-
-    def __new__(cls) -> NoNumber:
-        return super().__new__(cls, math.nan)
+class Unreadable(float):
+    """An infinite value or what is no number, given in a call. LinuxCNC refuses it where it is read."""
 
     def refused(self, *others: object) -> Any:
         raise ValueError
 
     __lt__ = __le__ = __gt__ = __ge__ = __eq__ = __ne__ = __bool__ = refused
-    __add__ = __radd__ = __sub__ = __rsub__ = refused
+    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __truediv__ = __rtruediv__ = refused
+    __neg__ = __pos__ = __abs__ = refused
     __hash__ = float.__hash__
 
 
 def marked(value: float) -> float:
-    """A value of a call, which may be no number."""
-    return value if value == value else NoNumber()
+    """A value of a call, which may be none to calculate with. Raises Refusal."""
+    if isinstance(value, Unreadable):
+        raise Refusal(F.NO_VALUE)
+    return value if math.isfinite(value) else Unreadable(value)
 
 
 def finite(value: float) -> float:

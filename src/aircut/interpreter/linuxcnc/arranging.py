@@ -142,7 +142,7 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
             raise Refusal(F.NO_MOTION_MODE, axes[0])
         motion = modal
         rows.append(modal)
-    elif motion is None and not rivals and not (takers and axes) and any(letter in modal.wakes for letter in letters):
+    elif not (motion or cancels or rivals or (takers and axes)) and any(letter in modal.wakes for letter in letters):
         used = {letter for row in rows for letter in row.takes}
         if any(letter in modal.wakes and letter not in used for letter in letters):
             motion = modal
@@ -160,6 +160,10 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
         for letter in row.needs:
             if letter not in letters:
                 raise Refusal(F.MISSING_WORD, code=row.name, word=letter.upper(), meaning="")
+        if written is not None and written.name in row.bars:
+            raise Refusal(
+                F.WRONG_STATE, "g", what=f"{row.name} is not possible with {written.name}: both use P", hint=""
+            )
     items = [dialect.items[letter] for letter in letters if letter in ITEMS]
     takes = {letter for row in (*rows, *items) for letter in row.takes}
     for letter in letters:

@@ -91,6 +91,12 @@ class ValueParser(Parser):
         return Application(function, (argument,), (start, self.at))
 
 
+def inside(argument: Expression) -> Expression:
+    """An argument of a function: in its brackets nothing is checked to be a number, but its value is."""
+    bracketed = isinstance(argument, Application) and argument.function is BRACKETS
+    return argument.arguments[0] if bracketed else argument  # type: ignore[union-attr]
+
+
 class Writer(compiling.Writer):
     """Writes a block's Python function."""
 
@@ -132,6 +138,8 @@ class Writer(compiling.Writer):
             assert isinstance(argument, Variable)
             text, _ = self.checked(argument.number)
             return f"f_exists(m.has_number({text}))", 2
+        if isinstance(node, Application) and node.function is not BRACKETS:
+            return super().expression(node._replace(arguments=tuple(map(inside, node.arguments))))
         return super().expression(node)
 
 

@@ -71,6 +71,7 @@ def expanded(m: State, text: str) -> str:
             parts.append(other)
         elif number or name:
             value = value_of(m, number, name)
+            value = None if value is None else float(value)  # also where it is none to calculate with
             shown = "" if value is None else f"{0.0 if abs(value) < NEAR_ZERO else value:.{decimals}f}"
             shown = "-nan" if shown == "nan" else shown
             parts.append(shown if 0 < len(shown) < LONGEST else UNKNOWN)

@@ -182,7 +182,7 @@ def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, again: bool, m
     for at in range(repeats):
         if at or height <= hole.top:
             height = hole.clear
-        place = goal(m, across)
+        place = goal(m, across, directed=False)
         place[normal] = height * m.unit
         go(m, TRAVERSE, place)
         if height > hole.top:

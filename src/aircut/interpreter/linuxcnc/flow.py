@@ -91,6 +91,7 @@ class Flow:
         self.sub = ""  # that is being run
         self.breaking = False
         self.continuing = False
+        self.called = False  # a call has come back: from then on LinuxCNC lets RETURN stand outside of subroutines
 
     # --- labels
 
@@ -301,12 +302,13 @@ class Flow:
         self.return_(line, name)
 
     def return_(self, line: OLine, name: str, sought: bool = False) -> None:
-        if not self.stack:
+        if not self.stack and not (self.called and line.keyword == "return"):
             raise refuse(f"{line.keyword.upper()} outside a subroutine")
-        if self.stack[-1].fanuc:
+        if self.stack and self.stack[-1].fanuc:
             raise refuse("a subroutine of M98 ends with M99")
         self.give_back(line)
-        self.leave()
+        if self.stack:
+            self.leave()
 
     def give_back(self, line: OLine) -> None:
         """The value behind RETURN or ENDSUB."""
@@ -372,6 +374,7 @@ class Flow:
         """Go back to the caller."""
         run, m = self.run, self.run.state
         level = self.stack.pop()
+        self.called = True
         restore_call(run)
         if level.locals is not None:
             m.numbered[1 : LOCALS + 1] = level.locals

@@ -11,7 +11,6 @@ from aircut.canon import EXACT_PATH, EXACT_STOP
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.linuxcnc.arranging import given
-from aircut.interpreter.linuxcnc.motion import wrong
 from aircut.interpreter.linuxcnc.state import LINEAR, State
 from aircut.interpreter.linuxcnc.turning import tell_blending
 from aircut.interpreter.state import INCH
@@ -250,8 +249,6 @@ def hold(m: State, w: Words) -> None:
 
 def dwell(m: State, w: Words) -> None:
     """G4. Raises Refusal."""
-    if any(row.name in ("G2", "G3") for row in m.codes):
-        raise wrong("G4 is not possible with G2 or G3: both use P")
     m.out.event("DWELL", w["p"])
 
 
@@ -304,7 +301,7 @@ CODES = (
     Code("G91.1", "Incremental centers", partial(set_arc_distance, False), Group.ARC_DISTANCE, Order.ARC_DISTANCE),
     Code("G98", "Retract to the start", partial(set_retract, 98), Group.RETRACT, Order.RETRACT),
     Code("G99", "Retract to R", partial(set_retract, 99), Group.RETRACT, Order.RETRACT),
-    Code("G4", "Dwell", dwell, Group.NON_MODAL, Order.DWELL, takes="p", check=check_dwell),
+    Code("G4", "Dwell", dwell, Group.NON_MODAL, Order.DWELL, takes="p", bars=("G2", "G3"), check=check_dwell),
     *(Code(f"M{n}", "Spindle", partial(turn_spindle, n), Group.SPINDLE, Order.SPINDLE, takes="$") for n in (3, 4, 5)),
     Code("M19", "Orient the spindle", orient, Group.SPINDLE, Order.SPINDLE,
          takes="rpq$", counts="p", check=check_orient),

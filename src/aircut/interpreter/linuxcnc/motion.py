@@ -49,8 +49,11 @@ def wrong(what: str, hint: str = "") -> Refusal:
     return Refusal(F.WRONG_STATE, what=what, hint=hint)
 
 
-def goal(m: State, w: Words, rapid: bool = False) -> list[float]:
-    """Where the axis words lead, in the program's frame. Raises Refusal."""
+def goal(m: State, w: Words, rapid: bool = False, directed: bool = True) -> list[float]:
+    """Where the axis words lead, in the program's frame. Raises Refusal.
+
+    directed: a polar radius alone needs a direction to keep; where it does not, X is taken.
+    """
     if m.ini.indexers and not rapid:
         bar_indexers(m, w)
     if m.machine_frame:
@@ -68,7 +71,7 @@ def goal(m: State, w: Words, rapid: bool = False) -> list[float]:
     if m.ini.wrapped and m.absolute:
         wrap(m, w, place)
     if "@" in w or "^" in w:
-        polar(m, w, place)
+        polar(m, w, place, directed)
     return place
 
 
@@ -90,13 +93,13 @@ def machine_goal(m: State, w: Words) -> list[float]:
     ]  # fmt: skip
 
 
-def polar(m: State, w: Words, place: list[float]) -> None:
+def polar(m: State, w: Words, place: list[float], directed: bool) -> None:
     """@ radius and ^ angle, about the origin of X and Y. Raises Refusal."""
     x, y = m.position[0], m.position[1]
     origin = x == 0.0 and y == 0.0
     radius, angle = hypot(x, y), atan2(y, x)
     if m.absolute:
-        if "@" in w and "^" not in w and origin:
+        if "@" in w and "^" not in w and origin and directed:
             raise wrong("a polar radius alone needs a direction, and X0 Y0 has none")
         radius = m.length(w, "@", radius)
         angle = radians(w["^"]) if "^" in w else angle

@@ -206,11 +206,10 @@ def store_here(m: State, w: Words, first: int, rotation: float) -> None:
 
 
 def reload_tools(m: State, w: Words) -> None:
-    """G10 L0. Raises Refusal."""
+    """G10 L0. What G10 L1 has set is in the table as well, and stays. Raises Refusal."""
     if m.slots[0].id > 0:
         raise wrong("G10 L0 is not possible with a tool in the spindle", "program T0 M6 before")
     m.out.event("RELOAD_TOOLDATA")
-    m.slots = [m.slots[0], *m.machine.tools.values()]
     m.stale = True
 
 

@@ -33,11 +33,11 @@ def check(m: State, w: Words) -> None:
 
 
 def check_spline_feed(m: State, w: Words) -> None:
-    """G93 wants an F word, the others some feed; a spindle that stands is not asked for. Raises Refusal."""
+    """G93 wants an F word, G94 some feed; G95 none, and a spindle that stands is not asked for. Raises Refusal."""
     if m.feed_mode == 93:
         if "f" not in w:
             raise Refusal(F.INVERSE_TIME_FEED, "f")
-    elif m.gave_feed <= 0.0:
+    elif m.feed_mode == 94 and m.gave_feed <= 0.0:
         raise Refusal(F.MISSING_FEED)
 
 

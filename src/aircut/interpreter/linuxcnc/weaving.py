@@ -255,7 +255,7 @@ class Weaver(Emitter):
         for i, node in enumerate(nodes):
             self.value(depth, f"a{i}", node, at, False)
         self.put(depth, f"loom = routines.get({name!r})")
-        numbers = "".join(f" or a{i} != a{i}" for i, node in enumerate(nodes) if not isinstance(node, Number))
+        numbers = "".join(f" or a{i} - a{i} != 0.0" for i, node in enumerate(nodes) if not isinstance(node, Number))
         self.leave(depth, at, f"loom is None or len(stack) >= {DEEPEST} or run.repeated >= limit{numbers}")
         zeros = f"zeros_{len(nodes)}"
         self.space[zeros] = (0.0,) * (LOCALS - len(nodes))
@@ -286,7 +286,7 @@ class Weaver(Emitter):
         self.put(depth, f"line = {at}")
         for node in nodes:
             self.value(depth, "t", node, at, False)
-        number = " or t != t" if nodes else ""
+        number = " or t - t != 0.0" if nodes else ""
         self.leave(depth, at, f"m.saved is not None or not stack or stack[-1].fanuc or run.repeated >= limit{number}")
         self.put(
             depth,
