@@ -98,7 +98,7 @@ def interpreter(
     mode: Mode = Mode.PROGRAM,
     start: Start | None = None,
 ) -> Run | Diagnostic:
-    """An interpreter of the file, or why there is none. Raises click.UsageError for an unknown dialect."""
+    """An interpreter of the file, or why there is none. Raises click.UsageError for what the dialect does not take."""
     language = dialect(options)
     try:
         source = Source.load(file)
@@ -107,7 +107,10 @@ def interpreter(
     chosen = settings(options, keep_going, keeps_moves, mode, start)
     if (start or chosen.stop_line) and not language.interpreter.starts_midway:
         raise click.UsageError(f"programs of the {language.name} dialect start at their first line in this version")
-    return language.interpreter(source, language, made, chosen)
+    try:
+        return language.interpreter(source, language, made, chosen)
+    except MachineError as error:
+        raise click.UsageError(str(error)) from None
 
 
 def policy(file: Path, options: dict[str, Any]) -> Policy:

@@ -394,7 +394,7 @@ def lead(
         else:
             eu = held[11]
             ev = held[12]
-            if not (loose and e[20] != 0.0) and spoils(held, eu, ev, w):
+            if not (loose and (e[20] != 0.0 or angle >= -facts[1])) and spoils(held, eu, ev, w):
                 break
             if angle < -facts[1]:
                 corner = True

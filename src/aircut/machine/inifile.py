@@ -12,7 +12,9 @@ import re
 from math import sqrt
 from pathlib import Path
 
+from aircut.machine import remaps
 from aircut.machine.config import MachineError
+from aircut.machine.remaps import Remap
 
 WHOLE = re.compile(r"[+-]?\d{1,9}", re.ASCII)
 NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?|[+-]?(?:inf|nan)", re.ASCII | re.IGNORECASE)
@@ -29,7 +31,7 @@ class Ini:
     orient: degrees added to M19's R. tolerance: mm by which an arc's radii may differ, by mm a program unit.
     wrapped, indexers: rotary axes by number. folders: where subroutines are searched.
     random: an empty spindle holds tool -1, G10 L1 leaves it as it is, and G43 H0 means the slot in use.
-    resets: how often the listing ends with ON_RESET.
+    resets: how often the listing ends with ON_RESET. remaps: codes that are subroutines.
     Raises MachineError for a value that LinuxCNC's interpreter does not start with.
     """
 
@@ -46,8 +48,10 @@ class Ini:
         self.indexers = frozenset(i for i, joint in joints.items() if joint and not joint.startswith("-"))
         usual = all(self.limit(unit) == high for unit, (_, high) in TOLERANCES.items())
         self.keeps_length = self.flag("RS274NGC", "RETAIN_G43")
+        self.remaps = self.remapped([value for name, value in entries(text) if name == ("RS274NGC", "REMAP") and value])
+        words = any(remap.group == 0 for remap in self.remaps)
         #: Moves mean what they do without the file.
-        self.plain = usual and not (self.wrapped or self.indexers or self.keeps_length)
+        self.plain = usual and not (self.wrapped or self.indexers or self.keeps_length or words)
         self.spindle_on = self.flag("EMCIO", "TOOL_CHANGE_WITH_SPINDLE_ON")
         self.quill_up = self.flag("EMCIO", "TOOL_CHANGE_QUILL_UP")
         self.at_g30 = self.flag("EMCIO", "TOOL_CHANGE_AT_G30")
@@ -55,8 +59,6 @@ class Ini:
         self.counts_arguments = self.whole("RS274NGC", "OWORD_NARGS", 0) == 1
         self.no_fanuc = self.flag("RS274NGC", "DISABLE_FANUC_STYLE_SUB")
         self.forgets_shift = self.flag("RS274NGC", "DISABLE_G92_PERSISTENCE")
-        if ("RS274NGC", "REMAP") in self.values:
-            raise MachineError(f"{path}: [RS274NGC]REMAP cannot be carried out in this version")
 
     @property
     def folders(self) -> list[Path]:
@@ -64,6 +66,21 @@ class Ini:
         names = [self.text("DISPLAY", "PROGRAM_PREFIX"), *self.text("RS274NGC", "SUBROUTINE_PATH").split(":")]
         given = [Path(os.path.expanduser(name)) for name in names if name and "\0" not in name]
         return [folder if folder.is_dir() else self.path.parent / folder for folder in given]
+
+    def remapped(self, values: list[str]) -> tuple[Remap, ...]:
+        """What REMAP lines say. Raises MachineError."""
+        found: dict[str, Remap] = {}
+        for value in values:
+            try:
+                remap = remaps.parse(value)
+            except ValueError as error:
+                raise MachineError(f"{self.path}: [RS274NGC]REMAP={value}: {error}") from None
+            if remap.code in found:
+                raise MachineError(f"{self.path}: [RS274NGC]REMAP: {remap.code.upper()} is remapped twice")
+            if not any((folder / f"{remap.label}.ngc").is_file() for folder in (Path(), *self.folders)):
+                raise MachineError(f"{self.path}: [RS274NGC]REMAP={value}: there is no file {remap.label}.ngc")
+            found[remap.code] = remap
+        return tuple(found.values())
 
     def text(self, section: str, name: str) -> str:
         """A value; empty where there is none."""

@@ -42,9 +42,11 @@ class Beside(Nist):
         return pi if self.side * (second.sign or first.sign) < 0 else -pi
 
     def outside(self, m: house.State, move: Move, onward: Onward) -> None:
-        """Before an arc nobody looks whether the move leads backwards, if it is not cut back at its end."""
-        assert self.held is not None and move.element is not None
-        self.release(m, self.held.path.end, onward, checked=move.element.center is None)
+        """Before an arc, or where the way goes on all but straight, nobody looks whether the move leads backwards."""
+        assert self.held is not None and self.held.move.element is not None and move.element is not None
+        turn = self.corner(self.held.move.element, move.element)
+        looks = move.element.center is None and turn < -m.dialect.cutter.straight
+        self.release(m, self.held.path.end, onward, checked=looks)
 
     def cut_back(self, m: house.State, held: Held, move: Move, path: Element) -> Point:
         """The meeting that stays the corner's while the corner closes, near or not. Raises Refusal."""

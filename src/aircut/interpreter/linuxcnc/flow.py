@@ -17,6 +17,7 @@ from aircut.interpreter.linuxcnc.arithmetic import marked
 from aircut.interpreter.linuxcnc.arranging import whole
 from aircut.interpreter.linuxcnc.blocks import OLine, arguments, brackets
 from aircut.interpreter.linuxcnc.places import EVALUATION, explained
+from aircut.interpreter.linuxcnc.remapping import resume
 from aircut.interpreter.linuxcnc.saving import restore_call
 from aircut.interpreter.linuxcnc.state import ARGUMENTS, LOCALS
 
@@ -56,6 +57,7 @@ class Level(NamedTuple):
     fanuc: bool
     saved: Any  # what M70 saved for the caller
     passes: int  # still to do, with this one
+    rest: Any = None  # of the block, behind a remapped code
 
 
 @dataclass
@@ -382,6 +384,8 @@ class Flow:
         m.calls = len(self.stack)
         self.sub = level.sub
         run.jump(level.text, level.line)
+        if level.rest is not None:
+            resume(run, level.rest)
 
     def bare(self, line: OLine, name: str, sought: bool = False) -> None:
         """A number alone: where M98 enters; nothing to do when it is run into, but in a subroutine of CALL."""

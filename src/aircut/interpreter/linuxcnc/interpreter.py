@@ -14,7 +14,7 @@ from aircut.diagnostics import Frame, Refusal, Severity, Span
 from aircut.diagnostics import faults as F
 from aircut.interpreter import path
 from aircut.interpreter.compiling import FAILURES
-from aircut.interpreter.linuxcnc import files, places, starting, unrun
+from aircut.interpreter.linuxcnc import files, places, remapping, starting, unrun
 from aircut.interpreter.linuxcnc.arranging import FREE, Steps, arrange, check_values, gather, whole
 from aircut.interpreter.linuxcnc.blocks import Block, OLine, parse, read
 from aircut.interpreter.linuxcnc.comments import say
@@ -50,8 +50,13 @@ class Interpreter(Run):
     units: dict[str, Text]
 
     def __init__(self, source: Source, dialect: Dialect, machine: Machine, settings: Settings | None = None) -> None:
+        ini = machine.ini
+        self.remaps = ini.remaps if ini is not None else ()
+        if self.remaps:
+            dialect = remapping.extended(dialect, self.remaps)
         super().__init__(source, dialect, machine, settings)
         self.state = State(dialect, machine, self.warn)
+        self.rest: tuple[Steps, dict[str, float]] | None = None  # of a block, where a code leads elsewhere
         self.unit = Text(source)
         self.units = {source.name: self.unit}
         for name, value in machine.names.items():  # kept from the run before
@@ -379,6 +384,7 @@ class Interpreter(Run):
                 return
             if m.transfer is not None:
                 transfer, m.transfer = m.transfer, None
+                self.rest = steps._replace(codes=steps.codes[nth + 1 :]), words
                 if transfer(self):
                     return
 
@@ -440,7 +446,7 @@ class Interpreter(Run):
 
         Contours of G70 to G72 are stepped through by those codes.
         """
-        if steady(self.state) and not self.flow.continuing and isinstance(self.state.out, Recorder):
+        if not self.remaps and steady(self.state) and not self.flow.continuing and isinstance(self.state.out, Recorder):
             loom.run(self, ASKED)
 
     def enter_text(self, text: Text) -> None:

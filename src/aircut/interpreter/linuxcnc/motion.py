@@ -43,6 +43,7 @@ SLOWEST = 0.1  # program units a minute
 TINY = 1e-7
 METER, FOOT = 1000.0, 304.8  # mm
 BACK_OFF = 0.254  # mm from the probed point, back towards the start
+STILL = 1e-9  # mm; a shorter way is a rounding error
 
 
 def wrong(what: str, hint: str = "") -> Refusal:
@@ -343,7 +344,7 @@ def probe(toward: bool, alarm: bool, m: State, w: Words) -> Generator[Request, A
             raise Refusal(F.PROBE_FAILED, reason=FAILURES[reply.state])
         return
     span = sqrt(sum((place[i] - start[i]) ** 2 for i in (0, 1, 2)))
-    if span > 0.0:
+    if span > STILL:
         back = [place[i] + (start[i] - place[i]) * (BACK_OFF / span) if i < 3 else place[i] for i in range(9)]
         m.told = back
 

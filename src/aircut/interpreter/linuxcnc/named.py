@@ -90,5 +90,5 @@ NAMED = (
     flag("_value_returned", "the last return had a value", lambda m: m.value_returned),
     value("_task", "0 in the stand-alone interpreter", lambda m: 0.0),
     value("_call_level", "depth of calls", lambda m: m.calls),
-    value("_remap_level", "depth of remaps", lambda m: m.remapped),
+    value("_remap_level", "depth of remaps", lambda m: len(m.remaps)),
 )

@@ -96,7 +96,7 @@ class State(house.State):
         self.hold = True
         self.value = 0.0  # of the last return
         self.value_returned = False
-        self.remapped = 0
+        self.remaps: tuple[str, ...] = ()  # codes whose subroutines run, the innermost last
         self.defining = False  # names without a value read as 0, behind an ENDSUB that is passed over
         self.spline: list[tuple[float, float, float]] = []  # control points of G5.2: x, y, weight
         self.spline_order = 0
