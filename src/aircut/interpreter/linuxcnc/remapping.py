@@ -101,9 +101,7 @@ def arguments(remap: Remap, m: State, w: Words) -> tuple[tuple[float, ...], dict
         elif name in w:
             found.setdefault(name, w[name] / 2.0 if name == "x" and m.diameter else w[name])
         elif letter.isupper():
-            raise Refusal(
-                F.MISSING_WORD, code=remap.code.upper(), word=letter, meaning=f"its subroutine O<{remap.label}>"
-            )
+            raise Refusal(F.MISSING_WORD, code=remap.code.upper(), word=letter, meaning=f"O<{remap.label}> asks for it")
     return (tuple(found.values()), {}) if "@" in remap.arguments else ((), found)
 
 
