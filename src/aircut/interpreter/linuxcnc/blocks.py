@@ -158,7 +158,7 @@ def build(writer: Writer, result: str) -> Callable[..., Any]:
 def compiled(*nodes: Expression) -> Callable[..., tuple[float, ...]]:
     """The function (state, literals) -> values of some expressions, which may be infinite or no numbers."""
     writer = Writer(None)  # type: ignore[arg-type]  # this language's variables need no table
-    return build(writer, compiling.tuple_text([writer.expression(node)[0] for node in nodes]))
+    return build(writer, compiling.tuple_text([writer.checked(node)[0] for node in nodes]))
 
 
 def checked(node: Expression) -> Callable[..., Any]:
