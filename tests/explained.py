@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 NUMBER = re.compile(r"-?\d+\.\d+")
+POLE = 1e14  # tangents beyond it are those of right angles
 BACK_OFF = (0.254, 0.01)  # mm, inches
 
 
@@ -58,9 +59,13 @@ def unset(text: str, ours: str, theirs: str) -> bool:
 
 
 def turning(text: str, ours: str, theirs: str) -> bool:
-    trigonometry = re.search(r"(sin|cos|tan)\[[^()\n]*(\*\*|exp)", text, re.IGNORECASE)
     x, y = numbers(ours), numbers(theirs)
-    return trigonometry is not None and len(x) == len(y) and NUMBER.sub("#", ours) == NUMBER.sub("#", theirs)
+    if len(x) != len(y) or NUMBER.sub("#", ours) != NUMBER.sub("#", theirs):
+        return False
+    if re.search(r"(sin|cos|tan)\[[^()\n]*(\*\*|exp)", text, re.IGNORECASE):
+        return True
+    poles = all(min(abs(p), abs(q)) > POLE for p, q in zip(x, y, strict=True) if abs(p - q) > 1e-4)
+    return poles and re.search(r"tan\[", text, re.IGNORECASE) is not None
 
 
 def declared(text: str, ours: str, theirs: str) -> bool:
@@ -76,7 +81,11 @@ EXPLAINED = (
     Explained("still", "a G38 without a way backs off in the direction of a rounding error, or not at all", still),
     Explained("unset", "behind a spline it takes over an X and Y never set, all but zero, which then decide", unset),
     Explained("declared", "M61 beside a contour: the end of the move that it waits with is lost", declared),
-    Explained("turning", "the angles of SIN, COS and TAN of huge powers: it calculates them in 80 bits", turning),
+    Explained(
+        "turning",
+        "the angles of SIN, COS and TAN of huge powers, and TAN of a right angle: it calculates them in 80 bits",
+        turning,
+    ),
 )
 MET: Counter[str] = Counter()
 

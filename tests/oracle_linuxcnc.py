@@ -643,11 +643,14 @@ class Writer:
         x = y = 0.0
         for _ in range(self.random.randint(2, 6)):
             x, y = x + self.random.uniform(-40, 40), y + self.random.uniform(-40, 40)
+            place = f"X{x:.3f} Y{y:.3f}" + (f" {self.words('ZABC', 1, -9, 9)}" if self.chance(0.2) else "")
             share = self.random.random()
-            if share < 0.6:
-                text.append(f"{self.pick('G1 G1 G0')} X{x:.3f} Y{y:.3f}")
+            if share < 0.55:
+                text.append(f"{self.pick('G1 G1 G0')} {place}")
+            elif share < 0.6:
+                text.append(f"S100 M3\n{self.pick('G33 G33.1')} {place} K1")
             elif share < 0.8:
-                text.append(f"{self.pick('G2 G3')} X{x:.3f} Y{y:.3f} R{self.random.uniform(40, 90):.2f}")
+                text.append(f"{self.pick('G2 G3')} {place} R{self.random.uniform(40, 90):.2f}")
             else:
                 text.append(self.pick(("G1 Z3", "S300", "G4 P1", "(note)", "F100", "M8", "(MSG,hi)", "T1")))
         text += ["G40", f"G1 X{x + 30:.3f} Y{y - 30:.3f}"]

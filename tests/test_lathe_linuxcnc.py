@@ -16,7 +16,7 @@ PROGRAMS = 25  # of a topic
 CONTOURS = 80
 #: Seeds of contours that are not compared: the interpreter does not end, or a rounding error decides on a
 #: summit or on whether two ways are parallel.
-APART = (3, 71, 42, 78, 80)
+APART = (3, 71, 42, 80)
 CYCLES = ("G73", "G74", "G81", "G82", "G83", "G84", "G85", "G86", "G87", "G88", "G89")
 MODES = (
     "G7|G8|G18|G17|G19|G20|G21|G90|G91|G98|G99|G61|G64 P.1|G17.1|G18.1|G90.1|G91.1|G53 G0 X1|G52 X1 Z2|G92 X3|G92.1|"

@@ -44,7 +44,9 @@ class Writer:
         feed = pick.choice((*[""] * 12, " F500", " F90.5"))
         number = pick.choice(("", "", "", f"N{pick.randint(1, 99)} "))
         across = "XYZ".replace(self.u, "").replace(self.v, "")
-        deep = pick.choice((*[""] * 15, f" {across}{pick.uniform(-1, 1):.2f}"))
+        deep = pick.choice(
+            (*[""] * 15, f" {across}{pick.uniform(-1, 1):.2f}", f" {pick.choice('AB')}{pick.uniform(-9, 9):.2f}")
+        )
         if pick.random() < 0.3:
             return number + self.arc(pick, far) + deep + feed
         self.at = (start[0] + far * cos(self.angle), start[1] + far * sin(self.angle))

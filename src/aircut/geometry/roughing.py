@@ -17,7 +17,7 @@ from aircut.geometry.offsetting import length as way_length
 
 SAME = 1e-9  # mm
 LEVEL = 1e-6  # mm by which a level may lie above a summit and still count as at it
-GAP = 0.0105  # mm of an outside corner that no arc closes
+GAP = 0.01  # mm along the contour: an outside corner that is less open is closed by no arc
 ROUNDED = 1e-2  # part of an arc's radius by which a line may miss it
 MOST_PASSES = 100_000
 
@@ -89,25 +89,59 @@ def beside(contour: Sequence[Element], right: float) -> list[Element]:
     if right == 0.0:
         return list(contour)
     moved: list[Element] = []
+    whole: Element | None = None  # the way beside the element before, not cut
     for before, element in zip((None, *contour), contour):  # noqa: B905  # the last has none behind it
-        path = offset(element, -right)
-        if path is None:
-            raise Turning("an arc is too small for its allowance")
+        whole, last = moved_right(element, right), whole
+        path = whole
         apart = 0.0 if before is None else distance(moved[-1].end, path.start)
         if before is not None and (apart > SAME or before.center is element.center is None):
             a, b = heading(before, before.end), heading(element, element.start)
-            if (a[0] * b[1] - a[1] * b[0]) * right > 0.0 and apart > GAP:  # turns away from the allowance's side
+            away = (a[0] * b[1] - a[1] * b[0]) * right > 0.0
+            if away and abs(path.start[0] - moved[-1].end[0]) > GAP:
                 moved.append(Element(moved[-1].end, path.start, element.start, 1 if right > 0.0 else -1))
             else:
-                corner = meeting(moved[-1], path)
+                assert last is not None
+                corner = meeting(last, path)
                 moved[-1] = moved[-1]._replace(end=corner)
                 path = path._replace(start=corner)
         moved.append(path)
     return moved
 
 
+def moved_right(element: Element, right: float) -> Element:
+    """The parallel element at a distance to its right. Raises Turning."""
+    if element.center is None:
+        du, dv = element.end[0] - element.start[0], element.end[1] - element.start[1]
+        reach = hypot(du, dv)
+        u, v = dv * right / reach, -(du * right / reach)  # in this order: see `between`
+        return Element((element.start[0] + u, element.start[1] + v), (element.end[0] + u, element.end[1] + v))
+    path = offset(element, -right)
+    if path is None:
+        raise Turning("an arc is too small for its allowance")
+    return path
+
+
+def between(first: Element, second: Element) -> Point:
+    """Where two straight lines meet. Raises Turning.
+
+    Ways that go straight on are parallel but for rounding, and what rounding leaves decides where on the first
+    they meet, or that they do not: so the order of the operations is the oracle's, found by trying.
+    """
+    (u, v), (end_u, end_v) = second.start, second.end
+    reach = hypot(end_u - u, end_v - v)
+    du, dv = (end_u - u) / reach, (end_v - v) / reach
+    begin, end = ((p[0] - end_u) * dv - (p[1] - end_v) * du for p in (first.start, first.end))  # beside the second
+    if begin == end:
+        raise Turning("two ways with the allowance do not meet")
+    part = begin / (begin - end)
+    (u, v), (end_u, end_v) = first.start, first.end
+    return u + part * (end_u - u), v + part * (end_v - v)
+
+
 def meeting(first: Element, second: Element) -> Point:
     """Where two elements meet at an inside corner; arcs have the radius of their start. Raises Turning."""
+    if first.center is second.center is None:
+        return between(first, second)
     points = crossings(*(one if one.center is None else one._replace(end=one.start) for one in (first, second)))
     if not points:
         return touching(first, second)

@@ -193,11 +193,15 @@ class Compensation:
     def around(self, m: State, move: Move, start: Point, onward: Onward) -> None:
         """Lead the tool around an outside corner to where the next move begins."""
         assert move.element is not None
-        joint = move._replace(end=self.contour, flags=m.flags)
+        joint = move._replace(end=self.joint(move), flags=m.flags)
         if move.kind == TRAVERSE:
             self.write(m, joint, start, None, 0, onward)
         else:
             self.write(m, joint, start, move.element.start, -self.side, onward)
+
+    def joint(self, move: Move) -> Place:
+        """Where the axes out of the plane are on the way around a corner."""
+        return self.contour
 
     def hold(
         self, m: State, move: Move, path: Element, guide: Element, before: Move | None = None, first: bool = False

@@ -254,6 +254,18 @@ def within(
 @cython.cfunc
 @cython.boundscheck(False)
 @cython.wraparound(False)
+def turned_within(facts: cython.double[::1], place: cython.double[::1], at: cython.Py_ssize_t) -> cython.bint:
+    """Whether the rotary axes of place[at:at+6] are within the box."""
+    return (
+        facts[10] <= place[at + 3] <= facts[11]
+        and facts[12] <= place[at + 4] <= facts[13]
+        and facts[14] <= place[at + 5] <= facts[15]
+    )
+
+
+@cython.cfunc
+@cython.boundscheck(False)
+@cython.wraparound(False)
 def parallel(facts: cython.double[::1], e: cython.double[::1], w: cython.double[::1]) -> cython.bint:
     """The way beside the element e[14:21], in e[7:14]; False where there is none."""
     left: cython.double = facts[0]
@@ -401,6 +413,8 @@ def lead(
                 round_turns = 0.0 if kind == TRAVERSE else -side
                 if not within(facts, held, 13, u, v, e[7], e[8], e[14], e[15], round_turns):
                     break
+                if loose and not turned_within(facts, contour, at):
+                    break
             else:
                 e[7] = eu
                 e[8] = ev
@@ -429,8 +443,8 @@ def lead(
         firsts[r] = count
         if corner:
             i = WIDTH * count
-            for k in range(6):
-                rows[i + k] = held[13 + k]
+            for k in range(6):  # in LinuxCNC's language rotary axes turn on the way around the corner already
+                rows[i + k] = contour[at + k] if loose and k > 2 else held[13 + k]
             rows[i + u] = e[7] + facts[2]
             rows[i + v] = e[8] + facts[3]
             rows[i + 6] = rows[i + 7] = 0.0

@@ -5,8 +5,11 @@ Source: the canonical listing, section 12.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from math import pi
+from typing import Any
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
@@ -19,7 +22,7 @@ from aircut.interpreter.linuxcnc.arranging import whole
 from aircut.interpreter.linuxcnc.modes import said
 from aircut.interpreter.linuxcnc.motion import wrong
 from aircut.interpreter.linuxcnc.state import State
-from aircut.interpreter.path import Onward
+from aircut.interpreter.path import Onward, Place
 from aircut.interpreter.table import Code, Group, Order, Words
 from aircut.language.arithmetic import EQUAL
 
@@ -33,6 +36,29 @@ class Beside(Nist):
     """The stage; its moves carry the line of the block that released them, as the listing has them."""
 
     loose = True
+    threads = False  # the move that comes is a G33 or G33.1
+
+    def enter(self, m: house.State, move: Move) -> None:
+        super().enter(m, move)
+        self.check_thread()
+
+    def carry(self, m: house.State, move: Move, onward: Onward) -> None:
+        if self.entered:
+            self.check_thread()
+        super().carry(m, move, onward)
+
+    def around(self, m: house.State, move: Move, start: Point, onward: Onward) -> None:
+        self.check_thread()
+        super().around(m, move, start, onward)
+
+    def joint(self, move: Move) -> Place:
+        """Rotary axes turn on the way around the corner already."""
+        return [*self.contour[:3], *move.end[3:]]
+
+    def check_thread(self) -> None:
+        """Raises Refusal where LinuxCNC takes no thread."""
+        if self.threads:
+            raise wrong("beside a contour a thread is no entry, goes around no outside corner and not out of the plane")
 
     def corner(self, first: Element, second: Element) -> float:
         """Where the way leads back, or almost, the bend of the later arc tells inside from outside."""
@@ -70,6 +96,16 @@ class Beside(Nist):
 
     def write(self, m: house.State, move: Move, end: Point, center: Point | None, turns: int, onward: Onward) -> None:
         super().write(m, move._replace(line=m.out.line, file=m.out.file), end, center, turns, onward)
+
+
+@contextmanager
+def threaded(stage: Any) -> Iterator[None]:
+    """The move meanwhile is a thread."""
+    stage.threads = isinstance(stage, Beside)
+    try:
+        yield
+    finally:
+        stage.threads = False
 
 
 def begin(m: State, side: int, radius: float, orientation: int) -> None:

@@ -422,6 +422,11 @@ class Flow:
         else:
             self.leave()
 
+    def pass_m99(self, search: Search) -> None:
+        """M99 on the way to a subroutine that is called takes back the value, as if it came back."""
+        if search.call:
+            self.run.state.value, self.run.state.value_returned = 0.0, False
+
     def unknown(self, line: OLine, name: str, sought: bool = False) -> None:
         where = (line.end, len(line.code))
         found = f"“{line.rest[:12]}”"

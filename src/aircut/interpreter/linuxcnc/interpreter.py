@@ -209,7 +209,7 @@ class Interpreter(Run):
         main = self.unit is self.units[self.files[0]]
         if percent and self.percent and (main or self.flow.search is not None):
             self.close()
-        if line.fanuc is not None and (line.fanuc[1] == "98" or self.flow.stack):
+        if line.fanuc is not None and (line.fanuc[1] == "98" or self.flow.stack or self.flow.search is not None):
             self.fanuc(line, line.fanuc)
             return
         if self.flow.search is not None:
@@ -254,7 +254,9 @@ class Interpreter(Run):
         """M98, and M99 in a subroutine. M98 is read even where lines are passed over. Raises Refusal."""
         passed = self.flow.search is not None
         if start[1] == "99":
-            if not passed:
+            if self.flow.search is not None:
+                self.flow.pass_m99(self.flow.search)
+            else:
                 self.flow.m99((start.end(), len(line.code.rstrip(COMMENT))))
             return
         if line.code.startswith(".", start.end()):

@@ -112,6 +112,23 @@ def frame_of(contour: list[Element], facing: bool) -> Frame:
     return Frame(False, -1.0 if dz > 0.0 else 1.0, -1.0 if dx < 0.0 else 1.0)
 
 
+def framed(
+    contour: list[Element], corners: dict[int, tuple[float, bool]], facing: bool, either: bool
+) -> tuple[Frame, list[Element]]:
+    """The contour, with its corners, in its frame; in either direction, along Z if it may. Raises Turning."""
+    if either:
+        try:
+            if contour[0].end[0] == contour[-1].end[0] > contour[0].start[0]:
+                raise Turning("its end along Z is that of its first move")  # then LinuxCNC does not turn Z around
+            return framed(contour, corners, False, False)
+        except Turning:
+            return framed(contour, corners, True, False)
+    frame = frame_of(contour, facing)
+    elements = roughing.rounded([frame.element(element) for element in contour], corners)
+    roughing.check_monotonic(elements)
+    return frame, elements
+
+
 def turn(facing: bool, pockets: Pockets | None, m: State, w: Words) -> None:
     """G70 (pockets is None), G71, G72. Raises Refusal."""
     name = m.codes[-1].name if m.codes else "G71"
@@ -140,14 +157,11 @@ def carry_out(facing: bool, pockets: Pockets | None, label: str, w: Words, run: 
     contour = tracer.moves[1:]  # the first is the approach
     if not contour:
         return
-    frame = frame_of(contour, facing)
-    begin = frame.place(start)
-    elements = [frame.element(element) for element in contour]
-    begin = (max(begin[0], elements[0].start[0]), begin[1])  # the approach does not go back
-    side = roughing.side_of(begin, elements)
     try:
-        elements = roughing.rounded(elements, corners)
-        roughing.check_monotonic(elements)
+        frame, elements = framed(contour, corners, facing, either=pockets is None)
+        begin = frame.place(start)
+        begin = (max(begin[0], elements[0].start[0]), begin[1])  # the approach does not go back
+        side = roughing.side_of(begin, elements)
         if pockets is None:
             count = int(w.get("p", 1.0))
             first, last = m.length(w, "d"), m.length(w, "e")

@@ -12,6 +12,7 @@ from aircut.canon import TOLD
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.cutter import SLOT
+from aircut.interpreter.linuxcnc.compensation import threaded
 from aircut.interpreter.linuxcnc.modes import spindle_of
 from aircut.interpreter.linuxcnc.motion import FEED, TRAVERSE, go, goal, wrong
 from aircut.interpreter.linuxcnc.state import State
@@ -29,10 +30,12 @@ def follows(m: State, w: Words, what: str) -> None:
 
 
 def beside(m: State, w: Words) -> bool:
-    """Beside a contour G33 and G33.1 are straight moves like others, which nothing joins to the spindle."""
-    if SLOT not in m.stages:
+    """Beside a contour G33 and G33.1 are straight moves like others, not joined to the spindle. Raises Refusal."""
+    stage = m.stages.get(SLOT)
+    if stage is None:
         return False
-    go(m, FEED, goal(m, w), abs(m.length(w, "k")) * m.speed)
+    with threaded(stage):
+        go(m, FEED, goal(m, w), abs(m.length(w, "k")) * m.speed)
     return True
 
 
@@ -178,11 +181,11 @@ CODES = (
         "G33",
         "Synchronized with the spindle",
         synchronized,
-        takes="k$",
+        takes="ke$",
         needs="k",
         needs_axes=True,
         check=check_synchronized,
     ),
-    follow("G33.1", "Rigid tapping", rigid_tap, takes="ki$", needs="k", needs_axes=True, check=check_synchronized),
+    follow("G33.1", "Rigid tapping", rigid_tap, takes="kie$", needs="k", needs_axes=True, check=check_synchronized),
     follow("G76", "Threading cycle", thread, takes="pijkrqhel$", needs="pijk", needs_axes=True),
 )
