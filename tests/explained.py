@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 NUMBER = re.compile(r"-?\d+\.\d+")
@@ -20,14 +20,14 @@ class Explained(NamedTuple):
 
     name: str
     reason: str
-    applies: Callable[[str, str, str], bool]
+    applies: Callable[[str, str, str, float], bool]  # program, lines, greatest offset before
 
 
 def numbers(line: str) -> list[float]:
     return [float(number) for number in NUMBER.findall(line)]
 
 
-def exchanged(text: str, ours: str, theirs: str) -> bool:
+def exchanged(text: str, ours: str, theirs: str, offset: float) -> bool:
     return (
         re.search(r"G0?(84|74)(?!\d)", text, re.IGNORECASE) is not None
         and "STRAIGHT_FEED" in ours
@@ -37,13 +37,13 @@ def exchanged(text: str, ours: str, theirs: str) -> bool:
     )
 
 
-def huge(text: str, ours: str, theirs: str) -> bool:
+def huge(text: str, ours: str, theirs: str, offset: float) -> bool:
     x, y = numbers(ours), numbers(theirs)
     same = len(x) == len(y) and NUMBER.sub("#", ours) == NUMBER.sub("#", theirs)
-    return same and all(abs(p - q) <= max(1e-4, 1e-11 * abs(p)) for p, q in zip(x, y, strict=True))
+    return same and all(abs(p - q) <= max(1e-4, 1e-11 * max(abs(p), offset)) for p, q in zip(x, y, strict=True))
 
 
-def still(text: str, ours: str, theirs: str) -> bool:
+def still(text: str, ours: str, theirs: str, offset: float) -> bool:
     x, y = numbers(ours), numbers(theirs)
     if not re.search(r"G38\.", text, re.IGNORECASE) or len(x) != len(y):
         return False
@@ -51,14 +51,14 @@ def still(text: str, ours: str, theirs: str) -> bool:
     return all(any(abs(step - off) < 1e-3 for off in BACK_OFF) for step in steps)
 
 
-def unset(text: str, ours: str, theirs: str) -> bool:
+def unset(text: str, ours: str, theirs: str, offset: float) -> bool:
     if not re.search(r"G0?5(\.[13])?(?!\d)", text, re.IGNORECASE):
         return False
     level = re.search(r"G19", text, re.IGNORECASE) is not None and "TRAVERSE(0.0000," in theirs
     return level or ("@" in text and "ON_RESET" in ours and "STRAIGHT_" in theirs)
 
 
-def turning(text: str, ours: str, theirs: str) -> bool:
+def turning(text: str, ours: str, theirs: str, offset: float) -> bool:
     x, y = numbers(ours), numbers(theirs)
     if len(x) != len(y) or NUMBER.sub("#", ours) != NUMBER.sub("#", theirs):
         return False
@@ -68,7 +68,7 @@ def turning(text: str, ours: str, theirs: str) -> bool:
     return poles and re.search(r"tan\[", text, re.IGNORECASE) is not None
 
 
-def declared(text: str, ours: str, theirs: str) -> bool:
+def declared(text: str, ours: str, theirs: str, offset: float) -> bool:
     beside = re.search(r"G4[12]", text, re.IGNORECASE) is not None
     return beside and "CHANGE_TOOL_NUMBER" in theirs and ("STRAIGHT_" in ours or "ARC_FEED" in ours)
 
@@ -77,7 +77,11 @@ EXPLAINED = (
     Explained(
         "tapping", "outside G17 it exchanges the axes of the feeds of G74 and G84: the tool would move aside", exchanged
     ),
-    Explained("huge", "numbers above a million millions have no more than sixteen digits that mean something", huge),
+    Explained(
+        "huge",
+        "numbers and offsets above a million millions have no more than sixteen digits that mean something",
+        huge,
+    ),
     Explained("still", "a G38 without a way backs off in the direction of a rounding error, or not at all", still),
     Explained("unset", "behind a spline it takes over an X and Y never set, all but zero, which then decide", unset),
     Explained("declared", "M61 beside a contour: the end of the move that it waits with is lost", declared),
@@ -90,13 +94,15 @@ EXPLAINED = (
 MET: Counter[str] = Counter()
 
 
-def explained(text: str, difference: str) -> bool:
-    """Whether a difference, as oracle.differ words it, is one of these; it is counted then."""
+def explained(text: str, difference: str, listing: Sequence[str] = ()) -> bool:
+    """Whether a difference, as oracle.differ words it in a listing, is one of these; it is counted then."""
     lines = difference.split("\n")
     if len(lines) < 3:
         return False
+    before = listing[: int(re.search(r"\d+", lines[0])[0])]  # type: ignore[index]
+    offset = max((abs(n) for line in before if "_OFFSET(" in line for n in numbers(line)), default=0.0)
     ours, theirs = lines[1].removeprefix("  ours   "), lines[2].removeprefix("  theirs ")
-    kind = next((kind for kind in EXPLAINED if kind.applies(text, ours, theirs)), None)
+    kind = next((kind for kind in EXPLAINED if kind.applies(text, ours, theirs, offset)), None)
     if kind is not None:
         MET[kind.name] += 1
     return kind is not None

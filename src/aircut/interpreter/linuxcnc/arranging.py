@@ -135,9 +135,9 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
     rivals = [row for row in takers if row.group & Group.NON_MODAL]  # the words of G43.1 may serve a motion too
     if motion is not None and rivals:
         raise Refusal(F.AXIS_CONFLICT, "g", first=rivals[0].name, second=motion.name)
+    if axes and cancels and motion is None and not rivals:
+        raise Refusal(F.G80_AXES, axes[0])
     if axes and not takers and motion is None:
-        if cancels:
-            raise Refusal(F.G80_AXES, axes[0])
         if modal.weak and not any("@" in row.takes for row in rows):  # G43.2 looks at them itself
             raise Refusal(F.NO_MOTION_MODE, axes[0])
         motion = modal

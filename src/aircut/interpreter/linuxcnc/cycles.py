@@ -168,6 +168,8 @@ def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, again: bool, m
     u, v, normal = axes_of(m)
     across = {letter: value for letter, value in w.items() if letter != NINE[normal]}
     height = m.position[normal] / m.unit
+    if m.position[normal] == hole.top * m.unit:  # led there by the hole before: inches from mm may be a last bit off
+        height = hole.top
     if sticky.level < hole.top:
         to_height(m, TRAVERSE, hole.top)
         height = hole.top
