@@ -79,7 +79,7 @@ EXPLAINED = (
     ),
     Explained(
         "huge",
-        "numbers and offsets above a million millions have no more than sixteen digits that mean something",
+        "numbers and offsets above a million millions have but sixteen digits that mean something",
         huge,
     ),
     Explained("still", "a G38 without a way backs off in the direction of a rounding error, or not at all", still),

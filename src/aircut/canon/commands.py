@@ -144,8 +144,8 @@ COMMANDS = {
             "START_SPEED_FEED_SYNC",
             "%f,%d",
             "feed follows the spindle: length a revolution",
-            "pitch velocity",
-            lengths(0),
+            "pitch velocity spindle",
+            lambda v, unit: (v[0] / unit, v[1]),
         ),
         command("STOP_SPEED_FEED_SYNCH"),
         command("ORIENT_SPINDLE", "%d, %.4f, %d", "turn the spindle to degrees", "spindle angle mode"),
@@ -188,10 +188,10 @@ COMMANDS = {
     )
 }
 
-#: Written under another name than their own, because two forms share one verb.
+#: Written under another name than their own, because two forms share one verb or it tells the spindle.
 WRITTEN = {
     "SET_MOTION_CONTROL_BLEND": "SET_MOTION_CONTROL_MODE",
-    "WAIT_ORIENT_COMPLETE": "SPINDLE.0.WAIT_ORIENT_COMPLETE",
+    "WAIT_ORIENT_COMPLETE": "SPINDLE.{}.WAIT_ORIENT_COMPLETE",
     "STORE_TOOL": "SET_TOOL_TABLE_ENTRY",
 }
 
@@ -230,4 +230,4 @@ SETS = {
     for name in names.split()
 }
 #: Of these there are many, told apart by their first value.
-MANY = ("output", "analog output")
+MANY = ("output", "analog output", "spindle speed", "spindle", "spindle mode", "speed override")

@@ -203,7 +203,7 @@ class Listing:
         if self.auxiliary is not None and event.name in self.auxiliary_offsets:
             self.auxiliary_offsets[event.name] = self.next_offsets
             form += ", %.4f, %.4f, %.4f" % tuple(value / self.unit for value in self.next_offsets)
-        text = f"{WRITTEN.get(event.name, event.name)}({form})"
+        text = f"{WRITTEN.get(event.name, event.name).format(*event.values)}({form})"
         yield self.line(event.file, event.line, text)
 
     def move(self, row: tuple[float, ...]) -> str:

@@ -21,6 +21,7 @@ NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?|[+-]?(?:inf|nan)", 
 NAME = re.compile(r"_ini\[([^\]]*)\](.+)")
 MAX_TEXT = 16 * 2**20  # bytes
 INCH = 25.4  # mm
+SPINDLES = 8  # at most
 #: Least and greatest tolerance of an arc's radii: mm, then inches.
 TOLERANCES = {"MM": (0.001, 2 * sqrt(2) * 0.01), "INCH": (0.00004, 2 * sqrt(2) * 0.001)}
 
@@ -31,7 +32,7 @@ class Ini:
     orient: degrees added to M19's R. tolerance: mm by which an arc's radii may differ, by mm a program unit.
     wrapped, indexers: rotary axes by number. folders: where subroutines are searched.
     random: an empty spindle holds tool -1, G10 L1 leaves it as it is, and G43 H0 means the slot in use.
-    resets: how often the listing ends with ON_RESET. remaps: codes that are subroutines.
+    spindles: how many. resets: how often the listing ends with ON_RESET. remaps: codes that are subroutines.
     Raises MachineError for a value that LinuxCNC's interpreter does not start with.
     """
 
@@ -41,8 +42,9 @@ class Ini:
         self.resets = 1
         self.orient = self.number("RS274NGC", "ORIENT_OFFSET") or 0.0
         self.tolerance = {1.0: self.limit("MM"), INCH: self.limit("INCH") * INCH}
-        if self.whole("TRAJ", "SPINDLES", 1) != 1:
-            raise MachineError(f"{path}: [TRAJ]SPINDLES is 1 in this version")
+        self.spindles = self.whole("TRAJ", "SPINDLES", 1)
+        if not 1 <= self.spindles <= SPINDLES:
+            raise MachineError(f"{path}: [TRAJ]SPINDLES is 1 to {SPINDLES}")
         self.wrapped = frozenset(i for i, a in enumerate("ABC", 3) if self.flag(f"AXIS_{a}", "WRAPPED_ROTARY"))
         joints = {i: self.text(f"AXIS_{a}", "LOCKING_INDEXER_JOINT") for i, a in enumerate("ABC", 3)}
         self.indexers = frozenset(i for i, joint in joints.items() if joint and not joint.startswith("-"))

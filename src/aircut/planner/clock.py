@@ -5,6 +5,7 @@ A pause stands before a move; the machine is at rest there. Each command that ta
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -70,6 +71,18 @@ class Overrides(NamedTuple):
     spindle: float = 1.0
 
 
+class Spindle:
+    """What is known of one spindle."""
+
+    def __init__(self, factor: float) -> None:
+        self.spinning = 0.0  # revolutions a minute, negative counterclockwise
+        self.direction = 0
+        self.speed = 0.0  # as programmed
+        self.surface = False  # that is one of the tool over the part, G96
+        self.factor = factor  # of the override, as the program allows
+        self.orienting = 0.0  # seconds that it takes to orient
+
+
 class Clock:
     """Reads the events of a run: fills `pauses` and `regimes`."""
 
@@ -81,16 +94,12 @@ class Clock:
         self.pauses: list[Pause] = []
         self.halts: list[int] = []  # indices of moves before which the machine stands
         self.regimes = [Regime(0, feed_factor=overrides.feed, rapid_factor=overrides.rapid)]
-        self.spinning = 0.0  # revolutions a minute, negative counterclockwise
-        self.direction = 0
-        self.speed = 0.0  # as programmed
-        self.surface = False  # that is one of the tool over the part, G96
-        self.spindle_factor = overrides.spindle  # as the program allows
+        self.spindles: defaultdict[int, Spindle] = defaultdict(lambda: Spindle(overrides.spindle))
+        self.followed = 0  # the spindle that feeds a revolution and threads go with
         self.feed_factor = overrides.feed
         self.per_revolution = False  # G95
         self.synchronized = False  # the axes follow the spindle
         self.let_go = -1  # before which move they last ceased to
-        self.orienting = 0.0  # seconds that it takes the spindle to orient
         self.tool: int | None = None
         self.by_macro = False
 
@@ -119,43 +128,48 @@ class Clock:
         self.pause(event, "dwell", event.values[0])
 
     def spin(self, event: Event, direction: int) -> None:
-        self.direction = direction
-        self.orienting = 0.0
+        spindle = self.spindles[event.values[0]]
+        spindle.direction = direction
+        spindle.orienting = 0.0
         self.turn(event)
 
     def set_speed(self, event: Event) -> None:
-        self.speed = event.values[1]
-        if self.direction:
+        spindle = self.spindles[event.values[0]]
+        spindle.speed = event.values[1]
+        if spindle.direction:
             self.turn(event)
         else:
             self.set_feed(event)
 
-    def turning(self) -> float:
-        """Revolutions a minute that the spindle can give of what is programmed."""
-        return min(self.speed * self.spindle_factor, self.machine.spindle.max_speed)
+    def turning(self, spindle: Spindle) -> float:
+        """Revolutions a minute that a spindle can give of what is programmed."""
+        return min(spindle.speed * spindle.factor, self.machine.spindle.max_speed)
 
     def turn(self, event: Event) -> None:
-        """Bring the spindle to its speed. Under G96 it follows the tool, which takes no time of its own."""
+        """Bring the event's spindle to its speed. Under G96 it follows the tool, which takes no time of its own."""
         self.set_feed(event)
-        wanted = self.direction * self.turning()
-        if self.surface and self.direction:
+        spindle = self.spindles[event.values[0]]
+        wanted = spindle.direction * self.turning(spindle)
+        if spindle.surface and spindle.direction:
             return
-        seconds = self.ramp(abs(wanted - self.spinning))
-        if wanted != self.spinning:
-            self.spinning = wanted
+        seconds = self.ramp(abs(wanted - spindle.spinning))
+        if wanted != spindle.spinning:
+            spindle.spinning = wanted
             self.pause(event, "spindle", seconds)
 
     def ramp(self, change: float) -> float:
-        """Seconds of a change of the spindle's speed, revolutions a minute."""
+        """Seconds of a change of a spindle's speed, revolutions a minute."""
         rate = self.machine.spindle.acceleration
         return change / rate if rate else 0.0
 
     def spindle_mode(self, event: Event) -> None:
-        self.surface = event.values[1] > 0.0
+        self.followed = event.values[0]
+        self.spindles[self.followed].surface = event.values[1] > 0.0
 
     def spindle_override(self, event: Event, on: bool) -> None:
-        self.spindle_factor = self.overrides.spindle if on else 1.0
-        if self.direction:
+        spindle = self.spindles[event.values[0]]
+        spindle.factor = self.overrides.spindle if on else 1.0
+        if spindle.direction:
             self.turn(event)
 
     # --- moves that follow the spindle
@@ -163,12 +177,14 @@ class Clock:
     def set_feed(self, event: Event) -> None:
         """What becomes of feeds: those for each revolution are as much faster as the spindle is."""
         factor = 1.0 if self.synchronized else self.feed_factor
-        if (self.synchronized or self.per_revolution) and self.speed > 0.0:
-            factor *= self.spindle_factor if self.surface else self.turning() / self.speed
+        spindle = self.spindles[self.followed]
+        if (self.synchronized or self.per_revolution) and spindle.speed > 0.0:
+            factor *= spindle.factor if spindle.surface else self.turning(spindle) / spindle.speed
         if factor != self.regimes[-1].feed_factor:
             self.change(event, feed_factor=factor)
 
     def feed_mode(self, event: Event) -> None:
+        self.followed = event.values[0]
         self.per_revolution = event.values[1] == 1
         self.set_feed(event)
 
@@ -176,9 +192,11 @@ class Clock:
         """The axes wait for the spindle's index: half a revolution on the average. Moves in a row wait once."""
         waits = not self.synchronized and self.let_go != event.at
         self.synchronized = True
+        self.followed = event.values[2]
         self.set_feed(event)
-        if waits and self.spinning:
-            self.pause(event, "index", 30.0 / abs(self.spinning))
+        spinning = self.spindles[self.followed].spinning
+        if waits and spinning:
+            self.pause(event, "index", 30.0 / abs(spinning))
 
     def let_loose(self, event: Event) -> None:
         self.synchronized, self.let_go = False, event.at
@@ -186,17 +204,20 @@ class Clock:
 
     def rigid_tap(self, event: Event) -> None:
         """At the bottom and again back at the top the spindle turns round, and the axis with it."""
+        spinning = self.spindles[self.followed].spinning
         for move in (1, 2):
-            self.pause(event._replace(at=event.at + move), "spindle", self.ramp(2.0 * abs(self.spinning)))
+            self.pause(event._replace(at=event.at + move), "spindle", self.ramp(2.0 * abs(spinning)))
 
     def orient(self, event: Event) -> None:
         """The spindle stops, and turns to an angle; it does so by itself."""
-        self.orienting = self.ramp(abs(self.spinning)) + self.durations.orient
-        self.spinning = 0.0
+        spindle = self.spindles[event.values[0]]
+        spindle.orienting = self.ramp(abs(spindle.spinning)) + self.durations.orient
+        spindle.spinning = 0.0
 
     def wait_orient(self, event: Event) -> None:
-        self.pause(event, "orient", min(self.orienting, event.values[1]))
-        self.orienting = 0.0
+        spindle = self.spindles[event.values[0]]
+        self.pause(event, "orient", min(spindle.orienting, event.values[1]))
+        spindle.orienting = 0.0
 
     # --- pauses
 

@@ -52,8 +52,9 @@ class Watch:
     def __init__(self, run: Run) -> None:
         self.run = run
         self.found: list[Diagnostic] = []
-        self.turning = False
-        self.speed = 0.0
+        self.speeds: dict[int, float] = {}  # of the spindles
+        self.turning: set[int] = set()
+        self.cuts = False  # one of them turns, and its speed is not 0
         self.told = False  # that it is not turning, since it last turned
         self.units = False  # said by the program, or missed already
         self.system_z = 0.0
@@ -89,10 +90,13 @@ class Watch:
         elif name == SHIFT:
             self.shift_z = values[2]
         elif name == SPEED:
-            self.speed = values[1]
+            self.speeds[int(values[0])] = values[1]
+        elif name == STOP:
+            self.turning.discard(int(values[0]))
         else:
-            self.turning = name != STOP
-        if self.turning and self.speed > 0.0:
+            self.turning.add(int(values[0]))
+        self.cuts = any(self.speeds.get(spindle, 0.0) > 0.0 for spindle in self.turning)
+        if self.cuts:
             self.told = False
 
     def stretch(self, rows: bytes | memoryview, kinds: bytes, heights: list[Any], start: int, end: int) -> None:
@@ -101,7 +105,7 @@ class Watch:
             return
         if not self.units:
             self.find_lengths(rows, start, end)
-        if not self.told and not (self.turning and self.speed > 0.0):
+        if not self.told and not self.cuts:
             self.find_cut(rows, kinds, start, end)
         zero = self.system_z + self.shift_z
         rapids = compress(heights[start:end], kinds[start:end].translate(IS_RAPID))

@@ -22,6 +22,7 @@ MOST_M = 4
 WHOLE = {"m": "a whole number", "t": "a whole number", "h": "a whole number", "l": "a whole number"}
 LOWEST = {"f": 0.0, "s": 0.0, "g": 0.0, "m": 0.0, "l": 0.0, "h": -1.0, "t": 0.0}
 TWICE = "@^"  # of these the last counts
+POINT = "G5.2"  # its points may be machine coordinates under G91 too
 TURNS = 0.001  # what a P that counts turns or directions may differ from a whole number
 FREE = -1.0  # a P or Q up to this may be given again; just this much counts as not given where it matters
 
@@ -33,7 +34,7 @@ def check_values(m: State, codes: Sequence[Code], words: Mapping[str, float]) ->
     absolute = m.absolute
     for row in codes:
         absolute = {"G90": True, "G91": False}.get(row.name, absolute)
-        if "G0" in row.fits and not absolute:
+        if "G0" in row.fits and not absolute and all(other.name != POINT for other in codes):
             raise Refusal(F.WRONG_STATE, "g", what="G53 is not possible under G91", hint="")
         if row.check is not None:
             row.check(m, words)

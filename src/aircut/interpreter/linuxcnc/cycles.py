@@ -28,17 +28,16 @@ from aircut.interpreter.cycles import (
     drill,
     drill_and_dwell,
 )
-from aircut.interpreter.drilling import DEPTH, STARTS, Sticky
+from aircut.interpreter.drilling import DEPTH, Sticky
 from aircut.interpreter.linuxcnc.arranging import given
-from aircut.interpreter.linuxcnc.modes import spindle_of
-from aircut.interpreter.linuxcnc.motion import CENTER_WORDS, FEED, TRAVERSE, go, goal, wrong
+from aircut.interpreter.linuxcnc.motion import CENTER_WORDS, FEED, TRAVERSE, go, goal, steady_speed, wrong
+from aircut.interpreter.linuxcnc.spindles import COMMANDS, choose
 from aircut.interpreter.linuxcnc.state import NINE, State
 from aircut.interpreter.linuxcnc.turning import begin_exact, end_exact
 from aircut.interpreter.state import INCH
 from aircut.interpreter.table import Code, Group, Order, Words
 
 CHIP_GAP = {1.0: 0.254, INCH: 0.01}  # program units
-STANDING = 5
 OTHER_WAY = {3: 4, 4: 3}
 ORIENTATION = {3: 2, 4: 3}  # mode of ORIENT_SPINDLE by the way the spindle turned
 MOST = 1_000_000  # bites of one block
@@ -179,8 +178,10 @@ def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, again: bool, m
         for letter in cycle.needs:
             if not given(w, letter):
                 raise Refusal(F.MISSING_WORD, code=cycle.name, word=letter.upper(), meaning="")
-    if cycle.steps is tap:
-        spindle_of(m, w)
+    if cycle.steps is tap and "$" in w:
+        choose(m, w)
+    number = m.chosen
+    spindle = m.spindles[number]
     for at in range(repeats):
         if at or height <= hole.top:
             height = hole.clear
@@ -191,7 +192,7 @@ def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, again: bool, m
             to_height(m, TRAVERSE, hole.top)
         if "q" in cycle.needs and hole.bite <= 0.0:
             raise Refusal(F.BAD_VALUE, "q", word="Q", value=hole.bite, wanted="the depth of a bite is above zero")
-        if cycle.turning and m.spindle not in cycle.turning:
+        if cycle.turning and spindle.direction not in cycle.turning:
             raise Refusal(F.CYCLE_SPINDLE, code=cycle.name)
         center = m.position[u], m.position[v]
         aside = [sticky.words.get(CENTER_WORDS[i % 3], 0.0) * m.unit for i in (u, v)]
@@ -211,23 +212,23 @@ def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, again: bool, m
                 case Do.DWELL:
                     m.out.event("DWELL", value)
                 case Do.STOP_SPINDLE:
-                    m.out.event("STOP_SPINDLE_TURNING", 0)
+                    m.out.event("STOP_SPINDLE_TURNING", number)
                 case Do.START_SPINDLE:
-                    m.out.event(STARTS[m.spindle], 0)
+                    m.out.event(COMMANDS[spindle.direction], number)
                 case Do.REVERSE_SPINDLE:
-                    m.out.event(STARTS[OTHER_WAY[m.spindle]], 0)
+                    m.out.event(COMMANDS[OTHER_WAY[spindle.direction]], number)
                 case Do.ORIENT:
-                    m.out.event("ORIENT_SPINDLE", 0, 0.0, ORIENTATION[m.spindle])
+                    m.out.event("ORIENT_SPINDLE", number, 0.0, ORIENTATION[spindle.direction])
                 case Do.PAUSE:
                     m.out.event("PROGRAM_STOP")
                 case Do.OVERRIDES_OFF:
                     m.follow_feed(False)
-                    m.follow_speed(False)
+                    m.follow_speed(False, number)
                 case Do.OVERRIDES_ON:
                     if overridden[0]:
                         m.follow_feed(True)
                     if overridden[1]:
-                        m.follow_speed(True)
+                        m.follow_speed(True, number)
     end_exact(m, flags)
 
 
@@ -244,8 +245,7 @@ def to_height(m: State, kind: int, height: float) -> None:
     """Move along the tool's axis to a height, program units."""
     place = m.position[:]
     place[axes_of(m)[2]] = height * m.unit
-    speed = m.gave_feed * m.unit * (m.speed if m.feed_mode == 95 else 1.0)
-    go(m, kind, place, speed if kind == FEED else 0.0)
+    go(m, kind, place, steady_speed(m) if kind == FEED else 0.0)
 
 
 CYCLES = (

@@ -93,7 +93,8 @@ class Flow:
         self.sub = ""  # that is being run
         self.breaking = False
         self.continuing = False
-        self.called = False  # a call has come back: from then on LinuxCNC lets RETURN stand outside of subroutines
+        #: A call has come back: until a definition is passed over LinuxCNC lets RETURN stand outside of subroutines.
+        self.called = False
 
     # --- labels
 
@@ -299,7 +300,7 @@ class Flow:
         if sought:
             self.run.state.defining = True
             self.give_back(line)
-            self.run.state.defining = False
+            self.run.state.defining = self.called = False
             return
         self.return_(line, name)
 

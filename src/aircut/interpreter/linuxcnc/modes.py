@@ -1,4 +1,4 @@
-"""Modes of LinuxCNC's language: feed, units, planes, distances, path, spindle, coolant, overrides.
+"""Modes of LinuxCNC's language: feed, units, planes, distances, path, coolant, overrides.
 
 Sources: 001; the canonical listing, sections 4, 5 and 14.
 """
@@ -11,13 +11,13 @@ from aircut.canon import EXACT_PATH, EXACT_STOP
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.linuxcnc.arranging import given
+from aircut.interpreter.linuxcnc.spindles import choose, overridden
 from aircut.interpreter.linuxcnc.state import LINEAR, State
 from aircut.interpreter.linuxcnc.turning import tell_blending
 from aircut.interpreter.state import INCH
 from aircut.interpreter.table import Code, Group, Order, Words
 
 PLANES = {170: (0, "XY"), 180: (1, "XZ"), 190: (2, "YZ"), 171: (0, "UNKNOWN"), 181: (1, "UNKNOWN"), 191: (2, "UNKNOWN")}
-UNLIMITED = 1e30  # rpm of G96 without D
 
 
 def said(m: State, text: str) -> None:
@@ -31,14 +31,14 @@ def said(m: State, text: str) -> None:
 def set_feed_mode(mode: int, m: State, w: Words) -> None:
     """G93, G94, G95: F is due again."""
     text = {93: "inverse time", 94: "units per minute", 95: "units per revolution"}[mode]
-    spindle = spindle_of(m, w)
+    spindle = choose(m, w)
     said(m, f"feed mode set to {text}")
     m.feed_mode = mode
     m.inverse_time = mode == 93
     if mode == 93:
         m.out.event("SET_FEED_MODE", 0, 0)
         return
-    m.out.event("SET_FEED_MODE", spindle, int(mode == 95))
+    m.out.event("SET_FEED_MODE", spindle if mode == 95 else 0, int(mode == 95))
     set_rate(m, 0.0)
 
 
@@ -52,64 +52,6 @@ def feed_word(m: State, w: Words) -> None:
     """F; under G93 it belongs to the move."""
     if m.feed_mode != 93:
         set_rate(m, w["f"])
-
-
-# --- spindle
-
-
-def spindle_of(m: State, w: Words, every: bool = False) -> int:
-    """The $ word, its whole part: there is one spindle, 0. every: or -1, all of them. Raises Refusal."""
-    if int(w.get("$", 0.0)) not in ((0, -1) if every else (0,)):
-        raise Refusal(F.BAD_VALUE, "$", word="$", value=w["$"], wanted="the machine has one spindle, 0")
-    return 0
-
-
-def speed_word(m: State, w: Words) -> None:
-    """S."""
-    spindle_of(m, w, every=True)
-    m.speed = w["s"]
-    m.out.event("SET_SPINDLE_SPEED", 0, m.speed)
-
-
-def turn_spindle(direction: int, m: State, w: Words) -> None:
-    """M3, M4, M5."""
-    spindle_of(m, w, every=True)
-    m.spindle = direction
-    name = {3: "START_SPINDLE_CLOCKWISE", 4: "START_SPINDLE_COUNTERCLOCKWISE", 5: "STOP_SPINDLE_TURNING"}[direction]
-    m.out.event(name, 0)
-
-
-def constant_surface(m: State, w: Words) -> None:
-    """G96: the S word is a surface speed, D the highest number of revolutions."""
-    m.css = True
-    m.most_revolutions = abs(w["d"]) if "d" in w else UNLIMITED
-    m.out.event("SET_SPINDLE_MODE", spindle_of(m, w), m.most_revolutions)
-
-
-def constant_revolutions(m: State, w: Words) -> None:
-    """G97."""
-    m.css = False
-    m.out.event("SET_SPINDLE_MODE", spindle_of(m, w), 0.0)
-
-
-def orient(m: State, w: Words) -> None:
-    """M19: turn the spindle to R degrees, and wait for it with Q. Raises Refusal."""
-    spindle_of(m, w)
-    m.spindle = 5
-    if "r" in w or "p" in w:
-        m.out.event("ORIENT_SPINDLE", 0, w.get("r", 0.0) + m.ini.orient, int(w.get("p", 0.0)))
-    if "q" in w:
-        if w["q"] <= 0.0:
-            raise Refusal(F.BAD_VALUE, "q", word="Q", value=w["q"], wanted="seconds above zero")
-        m.out.event("WAIT_ORIENT_COMPLETE", 0, w["q"])
-
-
-def check_orient(m: State, w: Words) -> None:
-    """Raises Refusal."""
-    if "r" in w and not 0.0 <= w["r"] <= 360.0:
-        raise Refusal(F.BAD_VALUE, "r", word="R", value=w["r"], wanted="0 to 360 degrees")
-    if "p" in w and w["p"] not in (0.0, 1.0, 2.0):
-        raise Refusal(F.BAD_VALUE, "p", word="P", value=w["p"], wanted="0, 1 or 2")
 
 
 # --- planes, units, distances
@@ -217,14 +159,14 @@ def override(feed: bool, speed: bool, on: bool, m: State, w: Words) -> None:
         m.feed_override = int(on)
         m.follow_feed(on)
     if speed:
-        m.speed_override = int(on)
-        m.follow_speed(on)
+        for number in overridden(m, {} if feed else w):
+            if number == 0:
+                m.speed_override = int(on)
+            m.follow_speed(on, number)
 
 
 def by_p(feed: bool, m: State, w: Words) -> None:
-    """M50, M51: P0 is off; without P, on. M51 with $ LinuxCNC refuses, whatever it says. Raises Refusal."""
-    if "$" in w and not feed:
-        raise Refusal(F.BAD_VALUE, "$", word="$", value=w["$"], wanted="M51 is for the one spindle that there is")
+    """M50, M51: P0 is off; without P, on. Raises Refusal."""
     override(feed, not feed, w.get("p", 1.0) != 0.0, m, w)
 
 
@@ -284,9 +226,6 @@ CODES = (
     Code("G93", "Inverse time feed", partial(set_feed_mode, 93), Group.FEED_MODE, Order.FEED_MODE),
     Code("G94", "Units a minute", partial(set_feed_mode, 94), Group.FEED_MODE, Order.FEED_MODE),
     Code("G95", "Units a revolution", partial(set_feed_mode, 95), Group.FEED_MODE, Order.FEED_MODE),
-    Code("G96", "Constant surface speed", constant_surface, Group.SPINDLE_MODE, Order.SPINDLE_MODE,
-         takes="d$", needs="s"),
-    Code("G97", "Constant revolutions", constant_revolutions, Group.SPINDLE_MODE, Order.SPINDLE_MODE),
     *(plane(f"G{n / 10:g}", "Plane", partial(set_plane, n)) for n in (170, 180, 190, 171, 181, 191)),
     Code("G20", "Inches", partial(set_units, INCH), Group.UNITS, Order.UNITS),
     Code("G21", "Millimeters", partial(set_units, 1.0), Group.UNITS, Order.UNITS),
@@ -302,9 +241,6 @@ CODES = (
     Code("G98", "Retract to the start", partial(set_retract, 98), Group.RETRACT, Order.RETRACT),
     Code("G99", "Retract to R", partial(set_retract, 99), Group.RETRACT, Order.RETRACT),
     Code("G4", "Dwell", dwell, Group.NON_MODAL, Order.DWELL, takes="p", bars=("G2", "G3"), check=check_dwell),
-    *(Code(f"M{n}", "Spindle", partial(turn_spindle, n), Group.SPINDLE, Order.SPINDLE, takes="$") for n in (3, 4, 5)),
-    Code("M19", "Orient the spindle", orient, Group.SPINDLE, Order.SPINDLE,
-         takes="rpq$", counts="p", check=check_orient),
     Code("M7", "Mist", partial(coolant, True), COOLANT, Order.COOLANT),
     Code("M8", "Flood", partial(coolant, False), COOLANT, Order.COOLANT),
     Code("M9", "Coolant off", partial(coolant, None), COOLANT, Order.COOLANT),
@@ -321,7 +257,4 @@ CODES = (
     stopping("M30", "End of program, pallet shuttle", partial(end, True)),
 )  # fmt: skip
 
-ITEMS = (
-    Code("F", "Feed", feed_word, Group(0), Order.FEED),
-    Code("S", "Spindle speed", speed_word, Group(0), Order.SPEED, takes="$"),
-)
+ITEMS = (Code("F", "Feed", feed_word, Group(0), Order.FEED),)

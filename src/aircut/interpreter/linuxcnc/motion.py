@@ -161,21 +161,27 @@ def speed_of(m: State, w: Words, what: str, length: float) -> float:
     if m.gave_feed <= 0.0:
         raise Refusal(F.MISSING_FEED)
     if m.feed_mode == 95:
-        if m.speed <= 0.0:
+        if m.spindles[m.chosen].speed <= 0.0:
             raise wrong("G95 needs a spindle speed", "program S")
         return m.gave_feed * m.unit * revolutions(m, w)
     return m.gave_feed * m.unit
 
 
+def steady_speed(m: State) -> float:
+    """Speed of a feed move of which nothing is asked, mm/min."""
+    return m.gave_feed * m.unit * (m.spindles[m.chosen].speed if m.feed_mode == 95 else 1.0)
+
+
 def revolutions(m: State, w: Words) -> float:
     """Revolutions a minute in a move; under G96 those at its middle, where S is meters (G20: feet) a minute."""
-    if not m.css:
-        return m.speed
-    most = min(m.most_revolutions, m.machine.spindle.max_speed)
+    spindle = m.spindles[m.chosen]
+    if not spindle.css:
+        return spindle.speed
+    most = min(spindle.most, m.machine.spindle.max_speed)
     here = m.position[0]
     end = m.axis(w, 0) + (0.0 if m.absolute else here) if "x" in w else here
     around = tau * abs(here + end) / 2.0
-    return min(most, m.speed * (FOOT if m.unit == INCH else METER) / around) if around else most
+    return min(most, spindle.speed * (FOOT if m.unit == INCH else METER) / around) if around else most
 
 
 def check_feed(m: State, w: Words) -> None:
@@ -185,7 +191,7 @@ def check_feed(m: State, w: Words) -> None:
             raise Refusal(F.INVERSE_TIME_FEED, "f")
     elif m.gave_feed <= 0.0:
         raise Refusal(F.MISSING_FEED)
-    elif m.feed_mode == 95 and m.speed <= 0.0:
+    elif m.feed_mode == 95 and m.spindles[m.chosen].speed <= 0.0:
         raise wrong("G95 needs a spindle speed", "program S")
 
 
@@ -397,7 +403,12 @@ CODES = (
     arc_move("G3", "Counterclockwise arc feed", partial(arc, +1)),
     *(move(f"G38.{n}", "Straight probe", partial(probe, n < 4, n % 2 == 0), needs_axes=True) for n in (2, 3, 4, 5)),
     Code(
-        "G53", "Machine coordinates, for one block", machine_frame, Group.NON_MODAL, Order.NON_MODAL, fits=("G0", "G1")
+        "G53",
+        "Machine coordinates, for one block",
+        machine_frame,
+        Group.NON_MODAL,
+        Order.NON_MODAL,
+        fits=("G0", "G1", "G5.2"),
     ),
     Code("G80", "Cancel the motion mode", cancel, Group.MOTION, Order.MOTION, modal=True, weak=True),
     single("G28", "Go to the G28 position", partial(go_home, G28), axes=True),

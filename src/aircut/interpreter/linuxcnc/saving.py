@@ -43,7 +43,7 @@ def snapshot(m: State, returning: bool = False) -> Saved:
         "cutter": f"g{m.cutter or 40}",
         "distance": "g90" if m.absolute else "g91",
         "feed mode": f"g{m.feed_mode}",
-        "spindle mode": "g96" if m.css else "g97",
+        "spindle mode": "g96" if m.spindles[0].css else "g97",
         "system": SYSTEM_CODES[m.system],
         "length": "g43" if any(m.tool_offset) else "g49",
         "retract": f"g{m.retract}",

@@ -6,6 +6,7 @@ Source: the canonical listing, section 3.
 from __future__ import annotations
 
 from aircut.interpreter.linuxcnc.offsets import tell_rotation, tell_shift, tell_system
+from aircut.interpreter.linuxcnc.spindles import STANDING
 from aircut.interpreter.linuxcnc.state import G92, KEPT_LENGTHS, ORIGINS, POSITION, STEP, SYSTEM, State
 from aircut.interpreter.state import INCH
 from aircut.machine import memory
@@ -74,14 +75,15 @@ def finish(m: State) -> None:
     out.event("SET_FEED_RATE", 0.0)
     if not m.feed_override:
         m.follow_feed(True)
-    out.event("STOP_SPINDLE_TURNING", 0)
-    out.event("SET_SPINDLE_MODE", 0, 0.0)
+    for number, spindle in enumerate(m.spindles):
+        out.event("STOP_SPINDLE_TURNING", number)
+        out.event("SET_SPINDLE_MODE", number, 0.0)
+        spindle.direction = STANDING
     if m.mist:
         out.event("MIST_OFF")
     if m.flood:
         out.event("FLOOD_OFF")
     m.mist = m.flood = False
-    m.spindle = 5
     m.feed = m.gave_feed = 0.0
     if m.stop_code == 30.0:
         out.event("PALLET_SHUTTLE")

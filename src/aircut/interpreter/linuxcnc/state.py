@@ -15,6 +15,7 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter import state as house
 from aircut.interpreter.linuxcnc.logs import Logs
+from aircut.interpreter.linuxcnc.spindles import Spindle
 from aircut.interpreter.state import INCH
 from aircut.interpreter.table import Code
 from aircut.machine.inifile import NO_INI
@@ -48,8 +49,10 @@ class State(house.State):
     position: list[float]  # nine
 
     def __init__(self, dialect: Any, machine: Any, warn: Any) -> None:
-        super().__init__(dialect, machine, warn)
         self.ini = machine.ini or NO_INI
+        self.spindles = [Spindle() for _ in range(self.ini.spindles)]
+        self.chosen = 0  # the spindle that cycles, threads and feeds a revolution go with
+        super().__init__(dialect, machine, warn)
         self.position = [0.0] * 9
         self.numbered = [0.0] * (LAST + 1)
         #: U, V and W, if the machine has one of them, and where the next move leaves them (machine coordinates, mm).
@@ -86,13 +89,11 @@ class State(house.State):
         self.feed_mode = 94
         self.plane_code = 170
         self.path_mode = 64
-        self.css = False
-        self.most_revolutions = 0.0  # a minute, G96 D
         self.cutter = 0  # 0, 41, 42
         self.indexed = False  # this block's G0 has turned a locked axis
         self.arc_refused = False  # right after G40
         self.adaptive = False
-        self.followed = [True, True]  # whether the machine follows the overrides of feed and speed, M50 and M51 or not
+        self.followed = [True, True]  # the machine follows the overrides of feed and speed, M50 and M51 or not
         self.hold = True
         self.value = 0.0  # of the last return
         self.value_returned = False
@@ -116,6 +117,24 @@ class State(house.State):
                 self.numbered[number] = value
         for number, value in (machine.parameters or {}).items():
             self.numbered[number] = value
+
+    # --- the first spindle
+
+    @property
+    def speed(self) -> float:
+        return self.spindles[0].speed
+
+    @speed.setter
+    def speed(self, value: float) -> None:
+        self.spindles[0].speed = value
+
+    @property
+    def spindle(self) -> int:
+        return self.spindles[0].direction
+
+    @spindle.setter
+    def spindle(self, value: int) -> None:
+        self.spindles[0].direction = value
 
     # --- position
 
@@ -269,9 +288,9 @@ class State(house.State):
         self.followed[0] = on
         self.out.event("ENABLE_FEED_OVERRIDE" if on else "DISABLE_FEED_OVERRIDE")
 
-    def follow_speed(self, on: bool) -> None:
-        self.followed[1] = on
-        self.out.event("ENABLE_SPEED_OVERRIDE" if on else "DISABLE_SPEED_OVERRIDE", 0)
+    def follow_speed(self, on: bool, spindle: int) -> None:
+        self.followed[1] = on  # one for all spindles, as LinuxCNC keeps it
+        self.out.event("ENABLE_SPEED_OVERRIDE" if on else "DISABLE_SPEED_OVERRIDE", spindle)
 
     # --- tools
 

@@ -13,34 +13,34 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.cutter import SLOT
 from aircut.interpreter.linuxcnc.compensation import threaded
-from aircut.interpreter.linuxcnc.modes import spindle_of
-from aircut.interpreter.linuxcnc.motion import FEED, TRAVERSE, go, goal, wrong
+from aircut.interpreter.linuxcnc.motion import FEED, TRAVERSE, go, goal, steady_speed, wrong
+from aircut.interpreter.linuxcnc.spindles import STANDING, choose
 from aircut.interpreter.linuxcnc.state import State
 from aircut.interpreter.table import Code, Group, Order, Words
 
-STANDING = 5
 ENTRY, EXIT = 1, 2  # bits of G76's L
 
 
 def follows(m: State, w: Words, what: str) -> None:
-    """What all of them need. Raises Refusal."""
-    spindle_of(m, w)
-    if m.spindle == STANDING:
+    """Choose the spindle that they follow; it must turn. Raises Refusal."""
+    if "$" in w:
+        choose(m, w)
+    if m.spindles[m.chosen].direction == STANDING:
         raise wrong(f"{what} needs a turning spindle", "program S and M3")
 
 
 def beside(m: State, w: Words) -> bool:
-    """Beside a contour G33 and G33.1 are straight moves like others, not joined to the spindle. Raises Refusal."""
+    """Beside a contour G33 and G33.1 are straight moves like others: no spindle is asked for. Raises Refusal."""
     stage = m.stages.get(SLOT)
     if stage is None:
         return False
     with threaded(stage):
-        go(m, FEED, goal(m, w), abs(m.length(w, "k")) * m.speed)
+        go(m, FEED, goal(m, w), steady_speed(m))
     return True
 
 
 def start(m: State, pitch: float) -> None:
-    m.out.event("START_SPEED_FEED_SYNC", pitch, 0)
+    m.out.event("START_SPEED_FEED_SYNC", pitch, 0, m.chosen)
 
 
 def stop(m: State) -> None:
@@ -55,28 +55,28 @@ def check_synchronized(m: State, w: Words) -> None:
 
 def synchronized(m: State, w: Words) -> None:
     """G33: K is the way for a turn of the spindle. Raises Refusal."""
-    follows(m, w, "G33")
     if beside(m, w):
         return
+    follows(m, w, "G33")
     pitch = m.length(w, "k")
     place = goal(m, w)
     start(m, pitch)
-    go(m, FEED, place, abs(pitch) * m.speed)
+    go(m, FEED, place, abs(pitch) * m.spindles[m.chosen].speed)
     stop(m)
 
 
 def rigid_tap(m: State, w: Words) -> None:
     """G33.1: down and back, the spindle turning the other way; the position stays. Raises Refusal."""
-    follows(m, w, "G33.1")
     if beside(m, w):
         return
+    follows(m, w, "G33.1")
     place = goal(m, w)
     pitch = m.length(w, "k")
     here, told = m.position, m.told
     start(m, pitch)
     m.out.event("RIGID_TAP", *place[:3])
-    go(m, FEED, [*place[:3], *here[3:]], abs(pitch) * m.speed, m.flags | TOLD)
-    go(m, FEED, here, abs(pitch) * m.speed, m.flags | TOLD)
+    go(m, FEED, [*place[:3], *here[3:]], abs(pitch) * m.spindles[m.chosen].speed, m.flags | TOLD)
+    go(m, FEED, here, abs(pitch) * m.spindles[m.chosen].speed, m.flags | TOLD)
     m.position = [*here[:3], *place[3:]]  # for LinuxCNC the rotary axes have moved
     m.told = told
     stop(m)
@@ -144,7 +144,7 @@ class Pass:
         m = self.m
         place = m.position[:]
         place[0], place[2] = self.start[0] + self.side * depth, z
-        go(m, kind, place, self.pitch * m.speed if kind == FEED else 0.0)
+        go(m, kind, place, self.pitch * m.spindles[m.chosen].speed if kind == FEED else 0.0)
 
     def cut(self, depth: float, shift: float, whole_shift: float) -> None:
         """A pass at a depth, shifted along Z so that the tool cuts on one side."""

@@ -14,6 +14,7 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.linuxcnc.arranging import given
 from aircut.interpreter.linuxcnc.motion import home_of, index_and_go, wrong
+from aircut.interpreter.linuxcnc.spindles import stop_all
 from aircut.interpreter.linuxcnc.state import G30, NUMBERED_NINE, State
 from aircut.interpreter.table import Code, Group, Order, Words
 from aircut.machine.tools import EMPTY
@@ -35,8 +36,7 @@ def change(m: State, w: Words) -> None:
     slot = m.selected_slot
     m.out.event("START_CHANGE")
     if not m.ini.spindle_on:
-        m.out.event("STOP_SPINDLE_TURNING", 0)
-        m.spindle = 5
+        stop_all(m)
     if m.ini.quill_up:
         space = m.to_space(m.position)
         space[2] = -m.tool_offset[2]

@@ -293,6 +293,7 @@ class Weaver(Emitter):
             f"m.value = {'t' if nodes else '0.0'}",
             f"m.value_returned = {bool(nodes)}",
             "level = stack.pop()",
+            "flow.called = True",
             f"V[1:{LOCALS + 1}] = level.locals",
             "m.scope, m.saved, flow.sub, m.calls = level.scope, level.saved, level.sub, len(stack)",
             "run.next_line = level.line",
