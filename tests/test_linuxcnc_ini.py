@@ -296,7 +296,8 @@ def test_random_programs_under_random_files(tmp_path: Path) -> None:
         ("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_MM=0.0283", "MM is 0.001 to 0.02828427"),
         ("RS274NGC", "CENTER_ARC_RADIUS_TOLERANCE_INCH=nan", "INCH is 4e-05 to 0.002828427"),
         ("RS274NGC", "REMAP=M400 ngc=x", "there is no file x.ngc"),
-        ("TRAJ", "SPINDLES=2", "SPINDLES is 1"),
+        ("TRAJ", "SPINDLES=0", "SPINDLES is 1 to 8"),
+        ("TRAJ", "SPINDLES=9", "SPINDLES is 1 to 8"),
     ],
 )
 def test_what_cannot_be_run_is_told(name: str, line: str, said: str, tmp_path: Path) -> None:
