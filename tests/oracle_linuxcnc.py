@@ -6,6 +6,7 @@ from __future__ import annotations
 import random
 import subprocess
 from collections.abc import Callable
+from math import atan2, cos, hypot, pi, sin
 from pathlib import Path
 from typing import NamedTuple
 
@@ -636,24 +637,43 @@ class Writer:
         return (f"G18 G90 S100 M3\nG0 X20 Z5\nG76 P{self.literal(0.5, 2)} Z{self.literal(-30, -10)} I{sign}{self.literal(0.5, 2)} "
                 f"J{self.literal(0.2, 1)} K{self.literal(1.1, 3)} {extra}\n{self.plane}")  # fmt: skip
 
+    def around(self, axes: str, x: float, y: float) -> tuple[str, float, float]:
+        """An arc about a center, and where it ends; its two radii differ by rounding."""
+        digits = self.random.randint(2, 4)
+        toward, radius = self.random.uniform(-pi, pi), self.random.uniform(6, 30)
+        i, j = round(radius * cos(toward), digits), round(radius * sin(toward), digits)
+        sweep = self.random.uniform(0.3, 5) * self.random.choice((1, -1))
+        angle = atan2(-j, -i) + sweep
+        end = [round(center + hypot(i, j) * way, digits) for center, way in ((x + i, cos(angle)), (y + j, sin(angle)))]
+        left = (sweep > 0) == (axes[1] == "Y")  # G18 looks from the other side
+        return f"{'G3' if left else 'G2'} {axes[0]}{end[0]} {axes[1]}{end[1]} {axes[2]}{i} {axes[3]}{j}", *end
+
     def compensation(self) -> str:
-        """A shape around which the tool goes outside or inside with room enough, mostly."""
-        side = self.pick("G41.1 G42.1")
-        text = ["G17 G90 G94 F200 G40", "G0 X-60 Y-60", f"{side} D{self.literal(0.5, 6)}", "G1 X0 Y0"]
+        """A shape around which the tool goes outside or inside with room enough, mostly; also that of a lathe tool."""
+        plane = self.pick("G17 G17 G17 G18")
+        axes, others = ("XYIJ", "ZABC") if plane == "G17" else ("XZIK", "ABC")
+        u, v = axes[:2]
+        nose = f" L{self.random.randint(0, 9)}" if plane == "G18" and self.chance(0.8) else ""
+        tool = f"{self.pick('G41.1 G42.1')} D{self.literal(0.5, 6)}{nose}"
+        text = [f"{plane} G90 G94 F200 G40", f"G0 {u}-60 {v}-60", tool, f"G1 {u}0 {v}0"]
         x = y = 0.0
         for _ in range(self.random.randint(2, 6)):
+            before = x, y
             x, y = x + self.random.uniform(-40, 40), y + self.random.uniform(-40, 40)
-            place = f"X{x:.3f} Y{y:.3f}" + (f" {self.words('ZABC', 1, -9, 9)}" if self.chance(0.2) else "")
+            place = f"{u}{x:.3f} {v}{y:.3f}" + (f" {self.words(others, 1, -9, 9)}" if self.chance(0.2) else "")
             share = self.random.random()
             if share < 0.55:
                 text.append(f"{self.pick('G1 G1 G0')} {place}")
             elif share < 0.6:
                 text.append(f"S100 M3\n{self.pick('G33 G33.1')} {place} K1")
-            elif share < 0.8:
+            elif share < 0.7:
                 text.append(f"{self.pick('G2 G3')} {place} R{self.random.uniform(40, 90):.2f}")
+            elif share < 0.8:
+                arc, x, y = self.around(axes, *before)
+                text.append(arc)
             else:
                 text.append(self.pick(("G1 Z3", "S300", "G4 P1", "(note)", "F100", "M8", "(MSG,hi)", "T1")))
-        text += ["G40", f"G1 X{x + 30:.3f} Y{y - 30:.3f}"]
+        text += ["G40", f"G1 {u}{x + 30:.3f} {v}{y - 30:.3f}", "G17"]
         self.plane = "G17"
         self.absolute = True
         self.inverse = False

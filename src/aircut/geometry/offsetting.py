@@ -105,14 +105,18 @@ def square_end(element: Element, left: float) -> Point:
 def crossings(first: Element, second: Element) -> list[Point]:
     """Where the whole lines and circles of two elements meet: none, one or two points.
 
-    Arcs have the radius of their end; only one after a line that of its start (as the oracle has it: the
-    two differ by what the program rounds).
+    Arcs have the radius of their end. That of their start differs by what the program rounds: the line before
+    an arc is led to it by so much, across the arc's start (as the oracle has it).
     """
     if first.center is None and second.center is None:
         return line_line(first, second)
     if first.center is None:
         assert second.center is not None
-        return line_circle(first, second.center, distance(second.start, second.center))
+        center, start = second.center, second.start
+        from_start, radius = distance(start, center), distance(second.end, center)
+        share = (radius - from_start) / from_start
+        shift = (start[0] - center[0]) * share, (start[1] - center[1]) * share
+        return line_circle(first, center, radius, shift)
     if second.center is None:
         return line_circle(second, first.center, distance(first.end, first.center))
     radii = distance(first.end, first.center), distance(second.end, second.center)
@@ -129,11 +133,12 @@ def line_line(first: Element, second: Element) -> list[Point]:
     return [(first.end[0] + along * a[0], first.end[1] + along * a[1])]
 
 
-def line_circle(line: Element, center: Point, radius: float) -> list[Point]:
+def line_circle(line: Element, center: Point, radius: float, shift: Vector = (0.0, 0.0)) -> list[Point]:
     d = heading(line, line.end)
-    du, dv = center[0] - line.start[0], center[1] - line.start[1]
+    start = line.start[0] + shift[0], line.start[1] + shift[1]
+    du, dv = center[0] - start[0], center[1] - start[1]
     along, across = du * d[0] + dv * d[1], dv * d[0] - du * d[1]
-    return pair(line.start, d, along, radius * radius - across * across, radius)
+    return pair(start, d, along, radius * radius - across * across, radius)
 
 
 def circle_circle(a: Point, radius: float, b: Point, other: float) -> list[Point]:

@@ -135,18 +135,22 @@ def line_circle(
     cu: cython.double,
     cv: cython.double,
     radius: cython.double,
+    su: cython.double,
+    sv: cython.double,
     w: cython.double[::1],
 ) -> cython.int:
-    """Where the line e[at:at+7] meets a circle, in w[0:4]; returns in how many points."""
+    """Where the line e[at:at+7], shifted, meets a circle, in w[0:4]; returns in how many points."""
     if heading(e, at, 0.0, 0.0, w) == 0.0:
         return 0
     hu: cython.double = w[0]
     hv: cython.double = w[1]
-    du: cython.double = cu - e[at]
-    dv: cython.double = cv - e[at + 1]
+    u: cython.double = e[at] + su
+    v: cython.double = e[at + 1] + sv
+    du: cython.double = cu - u
+    dv: cython.double = cv - v
     along: cython.double = du * hu + dv * hv
     across: cython.double = dv * hu - du * hv
-    return pair(e[at], e[at + 1], hu, hv, along, radius * radius - across * across, radius, w)
+    return pair(u, v, hu, hv, along, radius * radius - across * across, radius, w)
 
 
 @cython.cfunc
@@ -178,11 +182,14 @@ def crossings(e: cython.double[::1], w: cython.double[::1]) -> cython.int:
         w[0] = e[2] + along * au
         w[1] = e[3] + along * av
         return 1
-    if first == 0.0:
-        return line_circle(e, 0, e[11], e[12], distance(e[7], e[8], e[11], e[12]), w)
+    if first == 0.0:  # the line is led to the radius of the arc's end
+        start: cython.double = distance(e[7], e[8], e[11], e[12])
+        end: cython.double = distance(e[9], e[10], e[11], e[12])
+        share: cython.double = (end - start) / start
+        return line_circle(e, 0, e[11], e[12], end, (e[7] - e[11]) * share, (e[8] - e[12]) * share, w)
     radius: cython.double = distance(e[2], e[3], e[4], e[5])
     if second == 0.0:
-        return line_circle(e, 7, e[4], e[5], radius, w)
+        return line_circle(e, 7, e[4], e[5], radius, 0.0, 0.0, w)
     other: cython.double = distance(e[9], e[10], e[11], e[12])
     du = e[11] - e[4]
     dv = e[12] - e[5]
