@@ -105,8 +105,6 @@ def interpreter(
     except OSError as error:
         return F.CANNOT_READ.at(str(file), Span(), reason=error.strerror or str(error))
     chosen = settings(options, keep_going, keeps_moves, mode, start)
-    if (start or chosen.stop_line) and not language.interpreter.starts_midway:
-        raise click.UsageError(f"programs of the {language.name} dialect start at their first line in this version")
     try:
         return language.interpreter(source, language, made, chosen)
     except MachineError as error:

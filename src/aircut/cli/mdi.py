@@ -40,7 +40,7 @@ class Desk:
         self.options = options
         self.machine = common.machine(options)
         dialect = dialects.load(options["dialect"])
-        if not dialect.interpreter.starts_midway:
+        if not dialect.interpreter.takes_commands:
             raise click.UsageError(f"MDI is not in this version of the {dialect.name} dialect")
         self.session = Session(dialect, self.machine, common.settings(options, False, False))
         self.simulation: Simulation | None = running.simulated(self.session.interpreter, options)

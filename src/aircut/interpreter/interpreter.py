@@ -18,9 +18,9 @@ from aircut.interpreter.compiling import FAILURES, explain
 from aircut.interpreter.inputs import switched_off
 from aircut.interpreter.lane import Lane
 from aircut.interpreter.looms import ASKED, DONE
-from aircut.interpreter.midway import Midway
+from aircut.interpreter.midway import Marked
 from aircut.interpreter.requests import Request
-from aircut.interpreter.running import WHOLE, Mode, Run, Settings, Stopped
+from aircut.interpreter.running import WHOLE, Mode, Settings, Stopped
 from aircut.interpreter.state import State
 from aircut.interpreter.table import Code, Dialect, Group, Words
 from aircut.interpreter.tooling import TOOL_CHANGE
@@ -32,7 +32,6 @@ from aircut.language.blocks import Block, parse
 from aircut.language.expressions import Number
 from aircut.language.structure import Routine
 from aircut.machine import INSTALLED, Machine
-from aircut.machine.stops import Stop
 from aircut.source import Source
 
 FULL = CHUNK * ROW.size
@@ -45,10 +44,10 @@ UTF16 = (b"\xff\xfe", b"\xfe\xff")  # byte order marks
 SHAPE_WORD = re.compile(rb"([a-z])([\d.]*)")
 
 
-class Interpreter(Run):
+class Interpreter(Marked):
     """Runs one program on one machine. Iterate `run()`; then read `state` and `diagnostics`."""
 
-    starts_midway = True
+    takes_commands = True
 
     def __init__(self, source: Source, dialect: Dialect, machine: Machine, settings: Settings | None = None) -> None:
         super().__init__(source, dialect, machine, settings)
@@ -68,8 +67,6 @@ class Interpreter(Run):
         self.passes = 0
         self.watched: tuple[int, tuple[Any, ...]] | None = None  # a jump back, and the state then
         self.until = 0  # so many passes are compared with it
-        self.midway: Midway | None = None  # on the way to the start, while motion is only watched
-        self.mark = 0  # line of the main program at which `pass_mark` has something to do, from 1; 0 none
         #: A code that asks the world: its conversation, the codes still to run, and the block's words.
         self.talk: tuple[Generator[Request, Any, None], tuple[Code, ...], Words] | None = None
 
@@ -131,21 +128,6 @@ class Interpreter(Run):
         m.out.event("ON_RESET")
         yield m.out.take()
 
-    def prepare(self) -> bool:
-        """Set the compile mode, and the mark that the run starts or stops at; False if there is no such line."""
-        m, settings, count = self.state, self.settings, len(self.unit.source)
-        m.compile_mode = settings.mode
-        self.mark = settings.stop_line
-        if settings.start is not None:
-            self.mark = m.compile_line = settings.start.line
-            self.midway = Midway(settings.start, m.to_space(m.position))
-            if settings.start.stop is not None:
-                m.stopped = list(settings.start.stop.place)
-        if 0 <= self.mark <= count:
-            return True
-        self.tell(F.START_OUTSIDE.at(self.unit.source.name, Span(), line=self.mark, count=count))
-        return False
-
     def bound(self) -> int:
         """The line at which the main loop looks up: the routine's end; 0, at every line, where the mark lies in it."""
         if (
@@ -156,32 +138,12 @@ class Interpreter(Run):
             return 0
         return self.routine.end
 
-    def pass_mark(self, line: int) -> None:
-        """Before a line of the routine with the mark: the start, or the stop. Raises Refusal, Stopped."""
-        m = self.state
-        if self.midway is not None:
-            if not self.midway.arrived(m, line + 1):
-                return
-            self.line = line
-            m.line = m.out.line = line + 1
-            self.arrival = self.midway.begin(m, line + 1)
-            self.midway = None
-            self.mark = self.settings.stop_line
-        if self.midway is None and line + 1 == self.settings.stop_line:
-            self.line = line
-            path.flush(m)
-            self.halt()
+    def in_force(self) -> tuple[tuple[str, ...], str]:
+        modal = self.state.modal
+        return tuple(row.name for row in modal.values()), modal[Group.CUTTER].name
 
-    def halt(self) -> NoReturn:
-        """STOP: the run ends before its line, to be resumed; in a subroutine, before the call. Raises Stopped."""
-        m = self.state
-        first = self.stack[0] if self.stack else None
-        line, moves = (first.line, first.moves) if first else (self.line + 1, m.out.moves)
-        place = m.to_space(m.position)
-        m.stopped = list(place)
-        self.stop = Stop(self.files[0], line, moves, tuple(place))
-        m.out.line = 0
-        raise Stopped
+    def called_from(self) -> tuple[int, int] | None:
+        return (self.stack[0].line, self.stack[0].moves) if self.stack else None
 
     def check_structure(self, unit: Unit) -> None:
         for line, refusal in unit.structure.faults:
@@ -753,6 +715,5 @@ class Interpreter(Run):
 
     def finish(self, end: End) -> None:
         self.ended = end
-        if self.midway is not None:
-            self.tell(F.START_NOT_REACHED.at(self.files[0], Span(), line=self.midway.start.line))
+        self.not_arrived()
         starting.finish(self.state, end)

@@ -7,19 +7,24 @@ Sources: 000 section 2.2.3; decisions AMB-EXE-2, AMB-NAM-8.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from aircut.canon import ROW
 from aircut.canon.commands import MANY, SETS
 from aircut.canon.record import Events
-from aircut.diagnostics import Refusal
+from aircut.diagnostics import Refusal, Span
 from aircut.diagnostics import faults as F
 from aircut.interpreter import path
 from aircut.interpreter.motion import FEED, TRAVERSE, apart
 from aircut.interpreter.path import Place
-from aircut.interpreter.running import Arrival, Start
+from aircut.interpreter.running import Arrival, Run, Settings, Start, Stopped
 from aircut.interpreter.state import State
-from aircut.interpreter.table import Group
+from aircut.machine.stops import Stop
+
+if TYPE_CHECKING:
+    from aircut.interpreter.table import Dialect
+    from aircut.machine import Machine
+    from aircut.source import Source
 
 CUTTING = ("G1", "G2", "G3")
 
@@ -61,17 +66,19 @@ class Midway:
     def arrived(self, m: State, line: int) -> bool:
         return line >= self.start.line and m.out.moves >= self.start.moves
 
-    def begin(self, m: State, line: int) -> Arrival:
-        """Tell the state, and go to the place. Raises Refusal under radius compensation."""
-        cutter = m.modal[Group.CUTTER]
-        if cutter.name != "G40":
-            raise Refusal(F.START_COMPENSATED, line=line, code=cutter.name)
+    def begin(self, m: State, line: int, modes: tuple[str, ...], compensation: str) -> Arrival:
+        """Tell the state, and go to the place; modes: codes in force, and which of G40 to G42.1 is.
+
+        Raises Refusal under radius compensation.
+        """
+        if compensation != "G40":
+            raise Refusal(F.START_COMPENSATED, line=line, code=compensation)
         path.flush(m)
         self.drop(m)
         m.out.first = 0
         m.restarted = [*m.position]
         self.tell(m)
-        goal = self.last if "rtcp" in m.stages and self.last is not None else m.to_space(m.position)
+        goal = self.last if "rtcp" in m.stages and self.last is not None else m.to_space(m.position)[:6]
         top = max(self.highest, goal[2])
         above = [*goal[:2], top, *goal[3:]]
         feeding = m.motion is not None and m.motion.name in CUTTING and m.feed > 0.0 and goal[2] < top
@@ -88,9 +95,8 @@ class Midway:
                 path.record_line(m, kind, end, speed, m.flags)
                 approach.append((code, tuple(end)))
                 here = end
-        modes = tuple(row.name for row in m.modal.values())
         told = f"T{m.tool} F{m.feed / m.unit:g} S{m.speed:g}"
-        return Arrival(line, tuple(m.position), modes, told, tuple(approach))
+        return Arrival(line, tuple(m.position[:6]), modes, told, tuple(approach))
 
     def tell(self, m: State) -> None:
         """Write down what is in force; the tool is in the spindle already."""
@@ -100,3 +106,66 @@ class Midway:
             m.out.event("CHANGE_TOOL_NUMBER", m.tool)
         if m.selected_tool != m.tool:
             m.out.event("SELECT_TOOL", m.selected_tool)
+
+
+class Marked(Run):
+    """A run that can start from a line of the main program, and stop before one."""
+
+    def __init__(self, source: Source, dialect: Dialect, machine: Machine, settings: Settings | None) -> None:
+        super().__init__(source, dialect, machine, settings)
+        self.midway: Midway | None = None  # on the way to the start, while motion is only watched
+        self.mark = 0  # line of the main program at which `pass_mark` has something to do, from 1; 0 none
+
+    def in_force(self) -> tuple[tuple[str, ...], str]:
+        """The codes in force, and which of G40 to G42.1 is."""
+        raise NotImplementedError
+
+    def called_from(self) -> tuple[int, int] | None:
+        """In a subroutine: the line of the main program that called, from 1, and the moves before it."""
+        raise NotImplementedError
+
+    def prepare(self) -> bool:
+        """Set the compile mode, and the mark that the run starts or stops at; False if there is no such line."""
+        m, settings, count = self.state, self.settings, len(self.unit.source)
+        m.compile_mode = settings.mode
+        self.mark = settings.stop_line
+        if settings.start is not None:
+            self.mark = m.compile_line = settings.start.line
+            self.midway = Midway(settings.start, m.to_space(m.position)[:6])
+            if settings.start.stop is not None:
+                m.stopped = list(settings.start.stop.place)
+        if 0 <= self.mark <= count:
+            return True
+        self.tell(F.START_OUTSIDE.at(self.unit.source.name, Span(), line=self.mark, count=count))
+        return False
+
+    def pass_mark(self, line: int) -> None:
+        """Before a line of the routine with the mark: the start, or the stop. Raises Refusal, Stopped."""
+        m = self.state
+        if self.midway is not None:
+            if not self.midway.arrived(m, line + 1):
+                return
+            self.line = line
+            m.line = m.out.line = line + 1
+            self.arrival = self.midway.begin(m, line + 1, *self.in_force())
+            self.midway = None
+            self.mark = self.settings.stop_line
+        if self.midway is None and line + 1 == self.settings.stop_line:
+            self.line = line
+            path.flush(m)
+            self.halt()
+
+    def halt(self) -> NoReturn:
+        """STOP: the run ends before its line, to be resumed; in a subroutine, before the call. Raises Stopped."""
+        m = self.state
+        line, moves = self.called_from() or (self.line + 1, m.out.moves)
+        place = m.to_space(m.position)[:6]
+        m.stopped = list(place)
+        self.stop = Stop(self.files[0], line, moves, tuple(place))
+        m.out.line = 0
+        raise Stopped
+
+    def not_arrived(self) -> None:
+        """The program has ended on the way to its start."""
+        if self.midway is not None:
+            self.tell(F.START_NOT_REACHED.at(self.files[0], Span(), line=self.midway.start.line))

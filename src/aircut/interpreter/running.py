@@ -95,7 +95,7 @@ class Run:
     each with its `source`. unit: the one being run; line: in it, from 0.
     """
 
-    starts_midway = False  # it can start from a line, stop at one, and run MDI commands
+    takes_commands = False  # MDI
 
     state: State
     units: dict[str, Any]

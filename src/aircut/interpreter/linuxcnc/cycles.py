@@ -185,7 +185,9 @@ def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, again: bool, m
     for at in range(repeats):
         if at or height <= hole.top:
             height = hole.clear
-        place = goal(m, across, directed=False)
+        if at == 0 or not m.absolute:
+            target = goal(m, across, directed=False)
+        place = target[:]
         place[normal] = height * m.unit
         go(m, TRAVERSE, place)
         if height > hole.top:

@@ -93,6 +93,7 @@ class Flow:
         self.sub = ""  # that is being run
         self.breaking = False
         self.continuing = False
+        self.moves = 0  # made before the call that the main program is in
         #: A call has come back: until a definition is passed over LinuxCNC lets RETURN stand outside of subroutines.
         self.called = False
 
@@ -354,6 +355,8 @@ class Flow:
         if values is not None:
             kept = m.numbered[1 : LOCALS + 1]
             m.numbered[1 : LOCALS + 1] = [*map(marked, values), *[0.0] * (LOCALS - len(values))]
+        if not self.stack:
+            self.moves = m.out.moves
         self.stack.append(Level(run.unit, run.next_line, self.sub, kept, m.scope, name, values is None, m.saved, count))
         m.calls = len(self.stack)
         counted = m.ini.counts_arguments and values is not None

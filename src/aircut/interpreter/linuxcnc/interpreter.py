@@ -22,13 +22,16 @@ from aircut.interpreter.linuxcnc.files import Line, Text
 from aircut.interpreter.linuxcnc.flow import Flow, Search
 from aircut.interpreter.linuxcnc.lane import Lane
 from aircut.interpreter.linuxcnc.looms import ASKED, Loom, steady
+from aircut.interpreter.linuxcnc.placing import sub_of
+from aircut.interpreter.linuxcnc.saving import snapshot
 from aircut.interpreter.linuxcnc.shapes import Shape, shape_of
 from aircut.interpreter.linuxcnc.state import FAULTS, NINE, State
 from aircut.interpreter.linuxcnc.text import LONGEST, check, too_long
 from aircut.interpreter.linuxcnc.tooling import retained
 from aircut.interpreter.linuxcnc.weaving import weave_loop, weave_routine
+from aircut.interpreter.midway import Marked
 from aircut.interpreter.requests import Request
-from aircut.interpreter.running import Log, Run, Settings, Stopped
+from aircut.interpreter.running import Log, Settings, Stopped
 from aircut.interpreter.table import Dialect, Group
 from aircut.kernels import scan
 from aircut.language.text import COMMENT
@@ -42,7 +45,7 @@ FATAL = (F.BLOCK_BUDGET, F.ABORTED)
 LITERAL = re.compile(r"(?<=[abcdefhijklpqrstuvwxyz=\[+\-*/,])(\d+\.?\d*|\.\d+)(?![\d.])")
 
 
-class Interpreter(Run):
+class Interpreter(Marked):
     """A run of a program of this language."""
 
     state: State
@@ -56,6 +59,7 @@ class Interpreter(Run):
             dialect = remapping.extended(dialect, self.remaps)
         super().__init__(source, dialect, machine, settings)
         self.state = State(dialect, machine, self.warn)
+        self.mark_sub = ""  # subroutine that the mark stands in
         self.rest: tuple[Steps, dict[str, float]] | None = None  # of a block, where a code leads elsewhere
         self.unit = Text(source)
         self.units = {source.name: self.unit}
@@ -113,10 +117,15 @@ class Interpreter(Run):
         if source.raw(first).strip() == b"%":
             self.percent = True
             self.next_line = first + 1
-        try:
-            yield from self.lines()
-        except Stopped:
-            pass
+        if self.prepare():
+            self.mark_sub = sub_of(self.unit, self.mark - 1) if self.mark else ""
+            try:
+                yield from self.lines()
+            except Stopped:
+                pass
+        if self.midway is not None:
+            self.midway.drop(m)
+            m.out.first = 0
         if self.settings.keep_going:
             unrun.check(self, self.broken)
         locals_ = self.flow.stack[0].scope if self.flow.stack else m.scope
@@ -139,6 +148,8 @@ class Interpreter(Run):
             self.next_line = self.line + 1
             m.line = out.line = self.line + 1
             try:
+                if self.mark and self.unit is self.units[self.files[0]]:
+                    self.at_mark()
                 if self.unit.slow[self.line] or not self.glide():
                     self.step()
                 if self.talk is not None:
@@ -156,11 +167,35 @@ class Interpreter(Run):
                 if limit is not None and out.moves > limit:
                     self.tell_refusal(Refusal(F.OUTPUT_LIMIT, limit=limit))
                     raise Stopped
-                yield out.take()
+                if self.midway is None:
+                    yield out.take()
+                else:
+                    self.midway.drop(m)
+
+    def at_mark(self) -> None:
+        """Before a line that is run, in the subroutine of the mark or the main program. Raises Refusal, Stopped."""
+        if self.flow.search is None and self.flow.sub == self.mark_sub:
+            self.state.motion = self.modal
+            before = self.midway
+            self.pass_mark(self.line)
+            if before is not None and self.midway is None:
+                self.state.logs.forget()
+
+    def in_force(self) -> tuple[tuple[str, ...], str]:
+        m = self.state
+        now = snapshot(m)
+        names = ("plane", "distance", "feed mode", "system", "retract", "arc distance", "diameter", "path")
+        codes = (m.motion_name, now.units, *(now.modes[name] for name in names))
+        return tuple(code.upper() for code in codes), f"G{m.cutter or 40}"
+
+    def called_from(self) -> tuple[int, int] | None:
+        return (self.flow.stack[0].line, self.flow.moves) if self.flow.stack else None
 
     def go_on(self, refusal: Refusal | None) -> None:
         """After an error: go on with the next line where that is asked for and safe. Raises Stopped."""
-        if not self.settings.keep_going or (refusal is not None and refusal.fault in FATAL):
+        if not self.settings.keep_going:
+            self.halt()
+        if refusal is not None and refusal.fault in FATAL:
             raise Stopped from None
         if unrun.O_WORD.match(self.unit.source.raw(self.line)):  # nobody knows what would follow
             self.broken = not self.flow.stack
@@ -172,6 +207,11 @@ class Interpreter(Run):
         text, line = self.unit, self.line
         if self.flow.search is not None:
             return False
+        end = len(text.source)
+        if self.mark and text is self.units[self.files[0]]:
+            if line >= self.mark - 1:
+                return False
+            end = self.mark - 1
         if text.source.classes.find(scan.OTHER, line, line + STRETCH) >= 0:
             text.slow[line] = 1
             return False
@@ -179,7 +219,7 @@ class Interpreter(Run):
         m.motion = self.modal
         if not self.lane.open(m):
             return False
-        after = self.lane.run(m, text.source, line, len(text.source))
+        after = self.lane.run(m, text.source, line, end)
         if after == line:
             text.slow[line] = 1
             return False
@@ -396,7 +436,11 @@ class Interpreter(Run):
         """Carry on a block whose code has something to ask, and the codes after it. Raises Refusal."""
         self.talk = None
         try:
-            yield from talk
+            if self.midway is None:
+                yield from talk
+            else:
+                for _ in talk:  # before the start nobody is asked
+                    pass
         except Refusal as refusal:
             refusal.values.setdefault("code", self.modal.name)
             raise
@@ -448,6 +492,8 @@ class Interpreter(Run):
 
         Contours of G70 to G72 are stepped through by those codes.
         """
+        if self.mark:
+            return
         if not self.remaps and steady(self.state) and not self.flow.continuing and isinstance(self.state.out, Recorder):
             loom.run(self, ASKED)
 
@@ -487,6 +533,7 @@ class Interpreter(Run):
 
     def finish(self) -> None:
         """The end of the program. Raises Stopped."""
+        self.not_arrived()
         starting.finish(self.state)
         if self.percent:
             source = self.units[self.files[0]].source

@@ -30,6 +30,11 @@ class Logs:
             known = self.files[name] = Log(append, [])
         return known
 
+    def forget(self) -> None:
+        """What was written before the line that a run starts from."""
+        for log in self.files.values():
+            log.lines.clear()
+
     def comment(self, text: str) -> None:
         """PROBEOPEN and PROBECLOSE, which are comments like any other beside."""
         if found := PROBE_LOG.match(text):

@@ -265,6 +265,7 @@ class Weaver(Emitter):
         self.put(
             depth,
             f"kept = V[1:{LOCALS + 1}]",
+            "if not stack: flow.moves = out.moves",
             f"stack.append(new(Level, (text, {at + 1}, {self.sub!r}, kept, S, {name!r}, False, m.saved, 1, None)))",
             f"V[1:{LOCALS + 1}] = ({values}*{zeros})",
             "m.calls = len(stack)",
