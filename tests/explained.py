@@ -54,7 +54,8 @@ def still(text: str, ours: str, theirs: str, offset: float) -> bool:
 def unset(text: str, ours: str, theirs: str, offset: float) -> bool:
     if not re.search(r"G0?5(\.[13])?(?!\d)", text, re.IGNORECASE):
         return False
-    level = re.search(r"G19", text, re.IGNORECASE) is not None and "TRAVERSE(0.0000," in theirs
+    across = {"G19": r"TRAVERSE\(0\.0000,", "G18": r"TRAVERSE\(\S+ 0\.0000,"}
+    level = any(plane in text.upper() and re.search(move, theirs) for plane, move in across.items())
     return level or ("@" in text and "ON_RESET" in ours and "STRAIGHT_" in theirs)
 
 

@@ -240,6 +240,15 @@ def brackets(line: OLine, least: int, most: int) -> list[Expression]:
     return nodes
 
 
+def to_value(line: OLine) -> OLine:
+    """The line up to its first value in brackets, or its keyword. Raises Refusal."""
+    parser = ValueParser(line.code)
+    parser.at = line.end
+    if line.code.startswith("[", parser.at):
+        parser.brackets()
+    return line._replace(code=line.code[: parser.at])
+
+
 def arguments(line: OLine, least: int, most: int) -> Callable[..., tuple[float, ...]]:
     """The function of the values in brackets behind a keyword. Raises Refusal."""
     return compiled(*brackets(line, least, most))

@@ -97,6 +97,67 @@ class Beside(Nist):
     def write(self, m: house.State, move: Move, end: Point, center: Point | None, turns: int, onward: Onward) -> None:
         super().write(m, move._replace(line=m.out.line, file=m.out.file), end, center, turns, onward)
 
+    def stands(self, m: State) -> list[float]:
+        """End of the last move written, in the program's frame."""
+        assert self.written is not None
+        return m.to_program(self.written)
+
+
+class Turned(Beside):
+    """In G18 the plane turns with the work system about Z: the tool is led in the system as it was before."""
+
+    def __init__(self, m: State, radius: float, side: int, shift: tuple[float, float]) -> None:
+        super().__init__(m, radius, side, shift)
+        self.angle = m.rotation
+        self.moved = m.turned(m.origin[0], m.origin[1], -self.angle)[0] - m.origin[0]  # the origin's X
+        self.contour = self.back(m, self.contour)
+        self.tool = self.flat(self.contour)
+
+    def back(self, m: State, place: Place) -> Place:
+        return [*m.turned(place[0], place[1], -self.angle), *place[2:]]
+
+    def forth(self, m: State, place: Place) -> Place:
+        return [*m.turned(place[0], place[1], self.angle), *place[2:]]
+
+    def shifted(self, center: Point, by: float) -> Point:
+        """A center with its X moved."""
+        return center[0] + by * (self.u == 0), center[1] + by * (self.v == 0)
+
+    def wrapped(self, onward: Onward) -> Onward:
+        def line(m: Any, kind: int, end: Place, speed: float, flags: int) -> None:
+            onward.line(m, kind, self.forth(m, end), speed, flags)
+
+        def arc(m: Any, end: Place, center: Point, turns: int, speed: float, flags: int) -> None:
+            onward.arc(m, self.forth(m, end), self.shifted(center, -self.moved), turns, speed, flags)
+
+        return Onward(line, arc)
+
+    def line(self, m: Any, kind: int, end: Place, speed: float, flags: int, *, onward: Onward) -> None:
+        super().line(m, kind, self.back(m, end), speed, flags, onward=self.wrapped(onward))
+
+    def arc(self, m: Any, end: Place, center: Point, turns: int, speed: float, flags: int, *, onward: Onward) -> None:
+        center = self.shifted(center, self.moved)
+        super().arc(m, self.back(m, end), center, turns, speed, flags, onward=self.wrapped(onward))
+
+    def flush(self, m: Any, *, onward: Onward) -> None:
+        super().flush(m, onward=self.wrapped(onward))
+
+    def give_up(self, m: Any, move: Move) -> None:
+        super().give_up(m, move)
+        m.position = m.to_program(self.forth(m, move.end))
+
+    def trace(self, m: Any, move: Move) -> None:
+        element, contour = move.element, self.contour
+        if element is not None and element.center is not None:
+            element = element._replace(center=self.shifted(element.center, -self.moved))
+        self.contour = self.forth(m, contour)
+        super().trace(m, move._replace(end=self.forth(m, move.end), element=element))
+        self.contour = contour
+
+    def stands(self, m: State) -> list[float]:
+        assert self.written is not None
+        return m.to_program(self.forth(m, self.written))
+
 
 @contextmanager
 def threaded(stage: Any) -> Iterator[None]:
@@ -121,7 +182,7 @@ def begin(m: State, side: int, radius: float, orientation: int) -> None:
     m.out.at_once = AT_ONCE
     shift = (SHIFTS[orientation][0] * radius, SHIFTS[orientation][1] * radius)
     if radius:
-        stage = Beside(m, radius, side, shift)
+        stage = (Turned if m.rotation and m.plane else Beside)(m, radius, side, shift)
         stage.contour = stage.contour[:6]
         path.set_stage(m, SLOT, stage)
 
@@ -159,7 +220,7 @@ def off(m: State, w: Words) -> None:
         path.flush(m)
         m.arc_refused = getattr(stage, "entered", False)
         if isinstance(stage, Beside) and stage.entered and stage.written is not None:
-            m.told = m.to_program(stage.written)
+            m.told = stage.stands(m)
         path.set_stage(m, SLOT, Leaving() if m.arc_refused else None)
     m.cutter = 0
     said(m, "cutter radius compensation off")

@@ -15,7 +15,7 @@ from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.linuxcnc.arithmetic import marked
 from aircut.interpreter.linuxcnc.arranging import whole
-from aircut.interpreter.linuxcnc.blocks import OLine, arguments, brackets
+from aircut.interpreter.linuxcnc.blocks import OLine, arguments, brackets, to_value
 from aircut.interpreter.linuxcnc.places import EVALUATION, explained
 from aircut.interpreter.linuxcnc.remapping import resume
 from aircut.interpreter.linuxcnc.saving import restore_call
@@ -139,6 +139,9 @@ class Flow:
             return
         if line.keyword in ("", "sub") and search.kinds == ("endsub",):
             raise refuse("a subroutine inside a subroutine")
+        if line.keyword == "return" and name == search.label and search.kinds == ("endsub",):
+            self.give_back_unrun(line)
+            return
         label = name if line.keyword == "endsub" else self.scoped(name)
         if label != search.label:
             return
@@ -299,9 +302,8 @@ class Flow:
 
     def endsub(self, line: OLine, name: str, sought: bool = False) -> None:
         if sought:
-            self.run.state.defining = True
-            self.give_back(line)
-            self.run.state.defining = self.called = False
+            self.give_back_unrun(line)
+            self.called = False
             return
         self.return_(line, name)
 
@@ -320,6 +322,18 @@ class Flow:
         m = self.run.state
         m.value = marked(values[0]) if values else 0.0
         m.value_returned = bool(values)
+
+    def give_back_unrun(self, line: OLine) -> None:
+        """The same, computed as the definition is passed over.
+
+        Names without a value read as 0, and nobody looks at what follows the value.
+        """
+        m = self.run.state
+        m.defining = True
+        try:
+            self.give_back(to_value(line))
+        finally:
+            m.defining = False
 
     def call_(self, line: OLine, name: str, sought: bool = False) -> None:
         self.enter(name, self.values(line, 0, LOCALS), 1)

@@ -45,6 +45,7 @@ class Silent:
     def __init__(self) -> None:
         self.line = 0
         self.file = 0
+        self.moves = 0
 
     def event(self, name: str, *values: Any) -> None:
         """What the subroutine says is not told."""
