@@ -21,7 +21,6 @@ from aircut.source import Source
 if TYPE_CHECKING:
     from aircut.controller import Simulation
     from aircut.interpreter.state import State
-    from aircut.interpreter.table import Group
 
 HELP = """\
 A line of NC code runs at once; modes and variables stay until the end.
@@ -30,7 +29,6 @@ A line of NC code runs at once; modes and variables stay until the end.
 help         this text
 Ctrl-D       leave"""
 TYPED = re.compile(r"[#<\w.]+")  # what completion completes
-TOLD_MODES = ("MOTION", "PLANE", "UNITS", "DISTANCE", "FEED_MODE", "SYSTEM", "CUTTER", "TOOL_LENGTH")
 
 
 class Desk:
@@ -40,8 +38,6 @@ class Desk:
         self.options = options
         self.machine = common.machine(options)
         dialect = dialects.load(options["dialect"])
-        if not dialect.interpreter.takes_commands:
-            raise click.UsageError(f"MDI is not in this version of the {dialect.name} dialect")
         self.session = Session(dialect, self.machine, common.settings(options, False, False))
         self.simulation: Simulation | None = running.simulated(self.session.interpreter, options)
         self.listing = Listing(self.text)
@@ -70,9 +66,10 @@ class Desk:
 
     def value(self, expression: str) -> str | None:
         """The value of an expression as text; None where it has a fault, which is told."""
-        if not self.run(f"#<_value> = [{expression}]"):
+        name = self.session.interpreter.scratch
+        if not self.run(f"#<{name}> = [{expression}]"):
             return None
-        found = self.state.scope["_value"]
+        found = self.state.scope[name]
         return "null" if found is None or found != found else f"{found:.9g}"
 
     def standing(self) -> str:
@@ -83,8 +80,7 @@ class Desk:
             for i, axis in enumerate(AXES)
             if axis in m.axes
         )
-        told: Iterable[Group] = (group for group in m.modal if group.name in TOLD_MODES)
-        modes = " ".join(m.modal[group].name for group in told)
+        modes = " ".join(self.session.interpreter.standing())
         return f"{place}  {modes}  T{m.tool} F{m.feed / m.unit:g} S{m.speed:g}"
 
     def close(self) -> None:

@@ -40,6 +40,8 @@ PLAIN, BLANK = scan.PLAIN, scan.BLANK
 WATCH = 64  # passes through a loop that are compared with one before
 EVALUATION = (*FAILURES, Refusal)
 FATAL = (F.BLOCK_BUDGET, F.ENDLESS_LOOP, F.USER_ERROR, F.PROBE_FAILED, F.INPUT_TIMEOUT, F.OPERATOR_STOP)
+#: Modal groups that the line of an MDI desk shows.
+STANDING = ("MOTION", "PLANE", "UNITS", "DISTANCE", "FEED_MODE", "SYSTEM", "CUTTER", "TOOL_LENGTH")
 UTF16 = (b"\xff\xfe", b"\xfe\xff")  # byte order marks
 SHAPE_WORD = re.compile(rb"([a-z])([\d.]*)")
 
@@ -47,7 +49,7 @@ SHAPE_WORD = re.compile(rb"([a-z])([\d.]*)")
 class Interpreter(Marked):
     """Runs one program on one machine. Iterate `run()`; then read `state` and `diagnostics`."""
 
-    takes_commands = True
+    scratch = "_value"
 
     def __init__(self, source: Source, dialect: Dialect, machine: Machine, settings: Settings | None = None) -> None:
         super().__init__(source, dialect, machine, settings)
@@ -148,6 +150,23 @@ class Interpreter(Marked):
     def check_structure(self, unit: Unit) -> None:
         for line, refusal in unit.structure.faults:
             self.tell_refusal(refusal, unit, line, stack=False)
+
+    def begin(self) -> None:
+        starting.begin(self.state)
+
+    def command(self, source: Source) -> Generator[Chunk | Request, Any, None]:
+        unit = Unit(source, self.dialect, self.settings.block_delete, self.settings.limits.line)
+        self.enter_command(unit)
+        if not self.failed and any(unit.source.classes):
+            try:
+                yield from self.blocks()
+            except Stopped:
+                pass
+            yield from switched_off(self.state)
+        self.leave_command()
+
+    def standing(self) -> tuple[str, ...]:
+        return tuple(row.name for group, row in self.state.modal.items() if group.name in STANDING)
 
     def enter_command(self, unit: Unit) -> None:
         """Make ready for a command of its own, with the modes and global variables as they are."""

@@ -7,6 +7,7 @@ Sources: 000 section 2.2.3; decisions AMB-EXE-2, AMB-NAM-8.
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from aircut.canon import ROW
@@ -22,6 +23,8 @@ from aircut.interpreter.state import State
 from aircut.machine.stops import Stop
 
 if TYPE_CHECKING:
+    from aircut.canon import Chunk
+    from aircut.interpreter.requests import Request
     from aircut.interpreter.table import Dialect
     from aircut.machine import Machine
     from aircut.source import Source
@@ -115,6 +118,20 @@ class Marked(Run):
         super().__init__(source, dialect, machine, settings)
         self.midway: Midway | None = None  # on the way to the start, while motion is only watched
         self.mark = 0  # line of the main program at which `pass_mark` has something to do, from 1; 0 none
+
+    scratch = ""  # a named variable of one command of MDI
+
+    def begin(self) -> None:
+        """Tell what is in force before the first command of MDI."""
+        raise NotImplementedError
+
+    def command(self, source: Source) -> Generator[Chunk | Request, Any, None]:
+        """Run a command of MDI, with the modes and variables as they are."""
+        raise NotImplementedError
+
+    def standing(self) -> tuple[str, ...]:
+        """The codes in force that people want to see."""
+        return self.in_force()[0]
 
     def in_force(self) -> tuple[tuple[str, ...], str]:
         """The codes in force, and which of G40 to G42.1 is."""

@@ -95,8 +95,6 @@ class Run:
     each with its `source`. unit: the one being run; line: in it, from 0.
     """
 
-    takes_commands = False  # MDI
-
     state: State
     units: dict[str, Any]
     unit: Any

@@ -25,13 +25,13 @@ from aircut.interpreter.linuxcnc.looms import ASKED, Loom, steady
 from aircut.interpreter.linuxcnc.placing import sub_of
 from aircut.interpreter.linuxcnc.saving import snapshot
 from aircut.interpreter.linuxcnc.shapes import Shape, shape_of
-from aircut.interpreter.linuxcnc.state import FAULTS, NINE, State
+from aircut.interpreter.linuxcnc.state import FAULTS, LOCALS, NINE, State
 from aircut.interpreter.linuxcnc.text import LONGEST, check, too_long
 from aircut.interpreter.linuxcnc.tooling import retained
 from aircut.interpreter.linuxcnc.weaving import weave_loop, weave_routine
 from aircut.interpreter.midway import Marked
 from aircut.interpreter.requests import Request
-from aircut.interpreter.running import Log, Settings, Stopped
+from aircut.interpreter.running import Log, Mode, Settings, Stopped
 from aircut.interpreter.table import Dialect, Group
 from aircut.kernels import scan
 from aircut.language.text import COMMENT
@@ -47,6 +47,8 @@ LITERAL = re.compile(r"(?<=[abcdefhijklpqrstuvwxyz=\[+\-*/,])(\d+\.?\d*|\.\d+)(?
 
 class Interpreter(Marked):
     """A run of a program of this language."""
+
+    scratch = "mdi"
 
     state: State
     unit: Text
@@ -65,6 +67,7 @@ class Interpreter(Marked):
         self.units = {source.name: self.unit}
         for name, value in machine.names.items():  # kept from the run before
             self.state.write_name(name, value)
+        self.own = self.state.scope  # named variables of the main program
         self.flow = Flow(self)
         self.routines: dict[str, Loom] = {}  # subroutines compiled whole
         self.called: dict[str, int] = {}  # how often those that are not
@@ -98,6 +101,38 @@ class Interpreter(Marked):
         self.tell(refusal.fault.at(text.source.name, span, frames, **refusal.values))
 
     # --- the run
+
+    def begin(self) -> None:
+        starting.begin(self.state)
+
+    def command(self, source: Source) -> Generator[Chunk | Request, Any, None]:
+        m = self.state
+        self.unit = self.units[self.files[0]] = Text(source)
+        self.diagnostics = []
+        self._told.clear()
+        self.flow = Flow(self)
+        self.routines.clear()
+        self.called.clear()
+        self.next_line = self.repeated = 0
+        self.ended = self.talk = None
+        m.finished = False
+        m.scope = self.own
+        try:
+            yield from self.lines()
+        except Stopped:
+            pass
+        if self.flow.stack:  # a fault in a subroutine: its caller's values come back
+            first = self.flow.stack[0]
+            m.saved = first.saved
+            if first.locals is not None:
+                m.numbered[1 : LOCALS + 1] = first.locals
+        m.scope = self.own
+        m.calls = m.out.file = m.out.line = 0
+        m.transfer = self.talk = None
+        path.flush(m)
+        if m.finished:
+            starting.renew(m)
+            self.modal = self.dialect.codes["g1"]
 
     def execute(self) -> Generator[Chunk | Request, Any, None]:
         m = self.state
@@ -509,6 +544,10 @@ class Interpreter(Marked):
             self.unit, self.line = flow.search.where
             refusal = self.not_found(flow.search)
             flow.give_up()
+        elif self.settings.mode == Mode.MDI:
+            if flow.search is not None:
+                self.tell_refusal(self.not_found(flow.search))
+            raise Stopped
         else:
             self.line = max(len(self.unit.source) - 1, 0)
             refusal = Refusal(F.END_MISSING)

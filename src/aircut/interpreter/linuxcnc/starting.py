@@ -5,6 +5,8 @@ Source: the canonical listing, section 3.
 
 from __future__ import annotations
 
+from aircut.interpreter import path
+from aircut.interpreter.cutter import SLOT
 from aircut.interpreter.linuxcnc.offsets import tell_rotation, tell_shift, tell_system
 from aircut.interpreter.linuxcnc.spindles import STANDING
 from aircut.interpreter.linuxcnc.state import G92, KEPT_LENGTHS, ORIGINS, POSITION, STEP, SYSTEM, State
@@ -56,6 +58,18 @@ def remembered(m: State) -> dict[int, float]:
     if machine.parameters is None:
         kept = {n: v * INCH if n in KEPT_LENGTHS else v for n, v in kept.items() if n in memory.PERSISTENT}
     return kept
+
+
+def renew(m: State) -> None:
+    """The modes that M2 and M30 leave behind, beside what `finish` tells, for the next command of MDI."""
+    m.absolute = True
+    m.inverse_time = False
+    m.feed_mode = 94
+    m.feed_override = m.speed_override = 1
+    m.cutter = 0
+    m.arc_refused = False
+    path.set_stage(m, SLOT, None)
+    m.motion_name = "g1"
 
 
 def finish(m: State) -> None:
