@@ -232,6 +232,7 @@ def test_interrupted_output_leaves_nothing_behind(tmp_path: Path) -> None:
     process = subprocess.Popen(
         [sys.executable, "-m", "aircut", "run", str(program), "--format", "canon", "-o", str(out)],
         stderr=subprocess.PIPE, text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a shell's background jobs ignore it
     )  # fmt: skip
     time.sleep(2)
     process.send_signal(signal.SIGINT)
