@@ -95,8 +95,13 @@ class Compensation:
 
     def flush(self, m: State, *, onward: Onward) -> None:
         """Write all that is held; the last move ends square to its programmed end."""
-        if self.held is not None:
-            self.release(m, self.held.path.end, onward)
+        held = self.held
+        if held is not None:
+            try:
+                self.release(m, held.path.end, onward)
+            except Refusal:
+                self.give_up(m, held.move)
+                raise
 
     def known(self, m: State, kind: int, end: Place, element: Element | None, speed: float, flags: int) -> Move:
         return Move(kind, end, element, speed, flags, m.out.line, m.out.file, m.tool)

@@ -189,7 +189,10 @@ class Interpreter(Marked):
         m.calls = m.out.file = m.out.line = 0
         m.transfer = self.talk = None
         m.exact_stop = m.machine_frame = False
-        path.flush(m)
+        try:
+            path.flush(m)
+        except Refusal as refusal:
+            self.tell_refusal(refusal, self.unit, self.line)
 
     def blocks(self) -> Generator[Chunk | Request, Any, None]:
         """The main loop: each turn of the outer one enters a routine, each of the inner one runs a line."""

@@ -10,9 +10,7 @@ from __future__ import annotations
 from collections.abc import Generator
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from aircut.canon import ROW
 from aircut.canon.commands import MANY, SETS
-from aircut.canon.record import Events
 from aircut.diagnostics import Refusal, Span
 from aircut.diagnostics import faults as F
 from aircut.interpreter import path
@@ -48,23 +46,18 @@ class Midway:
 
         from aircut.canon.toolpath import Toolpath
 
-        out = m.out
-        if out.rows:
-            ends = Toolpath.of_rows([bytes(out.rows)]).ends()
+        chunk = m.out.take()
+        if chunk.rows:
+            ends = Toolpath.of_rows([bytes(chunk.rows)]).ends()
             self.highest = max(self.highest, float(np.max(ends[:, 2])))
             self.last = ends[-1].tolist()
-        out.first += len(out.rows) // ROW.size
-        out.place = out.end()
-        out.rows = bytearray()
-        out.contour = bytearray()
-        for event in out.events:
+        for event in chunk.events:
             what = SETS.get(event.name)
             if what is not None:
                 key = (what, event.values[0]) if what in MANY else (what,)
                 self.told.pop(key, None)  # the last comes last
                 self.told[key] = event.name, event.values
-        out.events = Events()
-        out.marks = [0] * len(out.marks)
+        m.out.give_back(chunk)
 
     def arrived(self, m: State, line: int) -> bool:
         return line >= self.start.line and m.out.moves >= self.start.moves

@@ -262,7 +262,7 @@ class Flow:
     def repeat(self, line: OLine, name: str, sought: bool = False) -> None:
         label = self.scoped(name)
         known = self.marks.get(label)
-        if known is not None and known.taken:
+        if known is not None and known.taken and known.line == self.run.line and known.text is self.run.unit:
             known.left -= 1
         else:
             (count,) = self.values(line, 1, 1)

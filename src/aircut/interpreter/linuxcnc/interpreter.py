@@ -129,7 +129,10 @@ class Interpreter(Marked):
         m.scope = self.own
         m.calls = m.out.file = m.out.line = 0
         m.transfer = self.talk = None
-        path.flush(m)
+        try:
+            path.flush(m)
+        except Refusal as refusal:
+            self.tell_refusal(refusal)
         if m.finished:
             starting.renew(m)
             self.modal = self.dialect.codes["g1"]
