@@ -92,3 +92,10 @@ def test_what_is_piped(tmp_path: Path) -> None:
     assert lines[1].endswith("STRAIGHT_TRAVERSE(2.0000, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000)")
     assert lines[2] == "8" and lines[3].startswith("X2.0000 Y0.0000") and "STRAIGHT_TRAVERSE(3.0000" in lines[4]
     assert done.returncode == 1 and "arc-no-center" in done.stderr
+
+
+def test_a_contour_that_its_command_leaves_too_narrow_is_a_fault_of_it(desk: Session) -> None:
+    """A tool of radius 2 in a left turn; the last move is 1 mm long."""
+    assert run(desk, "F100 G41.1 D4\nG1 X0 Y5\nG1 X10\nG1 Y6") == ["gouging-corner"]
+    assert run(desk, "G40") == []
+    assert run(desk, "G0 X3") == []
