@@ -15,6 +15,12 @@ import oracle
 FUNCTIONS = ("abs", "acos", "asin", "cos", "exp", "fix", "fup", "round", "ln", "sin", "sqrt", "tan")
 OPERATORS = ("+", "-", "*", "/", "mod", "**", "eq", "ne", "gt", "ge", "lt", "le", "and", "or", "xor")
 PLANES = {"G17": "XYIJZK", "G18": "XZIKYJ", "G19": "YZJKXI"}
+#: What stands between the moves of a contour.
+COMPENSATED = (
+    "G1 Z3", "S300", "G4 P1", "(note)", "F100", "M8", "(MSG,hi)", "T1", "G7\nG8", "G91\nG90", "G61", "G64 P.1", "G97 S30",
+    "M3", "M5", "M9", "G90.1\nG91.1", "G94 F80", "M64 P1", "M65 P1", "M62 P2", "M68 E1 Q3", "(DEBUG,#5420 #<_x> #<_y>)",
+    "#1=[#1+1]", "M70", "M72", "M19 R30", "G96 S20 D300", "M66 P0 L0", "(PRINT,#5421)", "G52 X0", "G21", "M7", "G4 P0.5", "M0",
+)  # fmt: skip
 SYSTEMS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
 CODES = [
     "G0",
@@ -672,7 +678,7 @@ class Writer:
                 arc, x, y = self.around(axes, *before)
                 text.append(arc)
             else:
-                text.append(self.pick(("G1 Z3", "S300", "G4 P1", "(note)", "F100", "M8", "(MSG,hi)", "T1")))
+                text.append(self.pick(COMPENSATED))
         text += ["G40", f"G1 {u}{x + 30:.3f} {v}{y - 30:.3f}", "G17"]
         self.plane = "G17"
         self.absolute = True

@@ -43,7 +43,8 @@ def difference(text: str, folder: Path) -> str:
         line = result.diagnostics[-1].span.line
         at = text.splitlines()[line - 1].strip() if line else ""
         cut = theirs.message == "Command too long" and at.startswith(theirs.line)
-        if theirs.line not in ("", at) and not cut and "seeking o-word" not in theirs.message:
+        elsewhere = any(words in theirs.message for words in ("seeking o-word", "restore_settings failed"))
+        if theirs.line not in ("", at) and not cut and not elsewhere:
             found = f"refused at {at!r}, theirs at {theirs.line!r}: {theirs.message}"
     if not found:
         return ""

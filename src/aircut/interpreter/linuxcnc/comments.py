@@ -86,7 +86,7 @@ def value_of(m: State, number: str, name: str) -> float | None:
         index = int(number[:9])
         if index > LAST:
             return None
-        return m.shown(index - POSITION) if POSITION <= index < POSITION + 9 else m.numbered[index]
+        return m.beside(index - POSITION) if POSITION <= index < POSITION + 9 else m.numbered[index]
     key = name.translate(BLANKS).lower()
     try:
         return m.read_name(key) if m.exists(key) else None

@@ -37,6 +37,7 @@ class Beside(Nist):
 
     loose = True
     threads = False  # the move that comes is a G33 or G33.1
+    flushed: Element | None = None  # the last move in the plane, where it was written without its corner
 
     def enter(self, m: house.State, move: Move) -> None:
         super().enter(m, move)
@@ -97,10 +98,33 @@ class Beside(Nist):
     def write(self, m: house.State, move: Move, end: Point, center: Point | None, turns: int, onward: Onward) -> None:
         super().write(m, move._replace(line=m.out.line, file=m.out.file), end, center, turns, onward)
 
-    def stands(self, m: State) -> list[float]:
-        """End of the last move written, in the program's frame."""
-        assert self.written is not None
-        return m.to_program(self.written)
+    def flush(self, m: Any, *, onward: Onward) -> None:
+        """What is held ends square to its end; an outside corner behind it is gone around all the same."""
+        self.flushed = self.held.move.element if self.held is not None else self.flushed
+        super().flush(m, onward=onward)
+
+    def join(self, m: house.State, move: Move, onward: Onward) -> None:
+        if self.held is None and self.flushed is not None and move.element is not None:
+            path = self.beside(m, move)
+            if self.corner(self.flushed, move.element) < -m.dialect.cutter.straight:
+                self.around(m, move, path.start, onward)
+        super().join(m, move, onward)
+
+    def led(self, m: State) -> list[float] | None:
+        """Where the tool's center is led to, as far as that is known, in the program's frame; None before the entry."""
+        if self.held is None and not (self.entered and self.written):
+            return None
+        place = self.back(m, m.to_space(m.position)[:6])
+        place[self.u], place[self.v] = self.tool if self.held is None else self.held.path.end
+        return m.to_program(self.home(m, place))
+
+    def back(self, m: State, place: Place) -> Place:
+        """From machine coordinates to where the tool is led."""
+        return place
+
+    def home(self, m: State, place: Place) -> Place:
+        """The way back from there."""
+        return place
 
 
 class Turned(Beside):
@@ -116,7 +140,7 @@ class Turned(Beside):
     def back(self, m: State, place: Place) -> Place:
         return [*m.turned(place[0], place[1], -self.angle), *place[2:]]
 
-    def forth(self, m: State, place: Place) -> Place:
+    def home(self, m: State, place: Place) -> Place:
         return [*m.turned(place[0], place[1], self.angle), *place[2:]]
 
     def shifted(self, center: Point, by: float) -> Point:
@@ -125,10 +149,10 @@ class Turned(Beside):
 
     def wrapped(self, onward: Onward) -> Onward:
         def line(m: Any, kind: int, end: Place, speed: float, flags: int) -> None:
-            onward.line(m, kind, self.forth(m, end), speed, flags)
+            onward.line(m, kind, self.home(m, end), speed, flags)
 
         def arc(m: Any, end: Place, center: Point, turns: int, speed: float, flags: int) -> None:
-            onward.arc(m, self.forth(m, end), self.shifted(center, -self.moved), turns, speed, flags)
+            onward.arc(m, self.home(m, end), self.shifted(center, -self.moved), turns, speed, flags)
 
         return Onward(line, arc)
 
@@ -144,19 +168,15 @@ class Turned(Beside):
 
     def give_up(self, m: Any, move: Move) -> None:
         super().give_up(m, move)
-        m.position = m.to_program(self.forth(m, move.end))
+        m.position = m.to_program(self.home(m, move.end))
 
     def trace(self, m: Any, move: Move) -> None:
         element, contour = move.element, self.contour
         if element is not None and element.center is not None:
             element = element._replace(center=self.shifted(element.center, -self.moved))
-        self.contour = self.forth(m, contour)
-        super().trace(m, move._replace(end=self.forth(m, move.end), element=element))
+        self.contour = self.home(m, contour)
+        super().trace(m, move._replace(end=self.home(m, move.end), element=element))
         self.contour = contour
-
-    def stands(self, m: State) -> list[float]:
-        assert self.written is not None
-        return m.to_program(self.forth(m, self.written))
 
 
 @contextmanager
@@ -220,7 +240,7 @@ def off(m: State, w: Words) -> None:
         path.flush(m)
         m.arc_refused = getattr(stage, "entered", False)
         if isinstance(stage, Beside) and stage.entered and stage.written is not None:
-            m.told = stage.stands(m)
+            m.told = m.to_program(stage.home(m, stage.written))
         path.set_stage(m, SLOT, Leaving() if m.arc_refused else None)
     m.cutter = 0
     said(m, "cutter radius compensation off")

@@ -46,6 +46,7 @@ class Silent:
         self.line = 0
         self.file = 0
         self.moves = 0
+        self.marks = ()
 
     def event(self, name: str, *values: Any) -> None:
         """What the subroutine says is not told."""

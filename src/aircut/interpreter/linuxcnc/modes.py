@@ -101,6 +101,8 @@ def set_diameter(diameter: bool, m: State, w: Words) -> None:
     """G7, G8."""
     if m.diameter != diameter:
         said(m, f"Lathe diameter mode changed to {'diameter' if diameter else 'radius'}")
+        if m.out.marks:  # this comment does not wait behind a compensated move
+            m.out.hurry()
     m.diameter = diameter
 
 

@@ -235,13 +235,11 @@ class State(house.State):
 
     def beside(self, i: int) -> float:
         """As `shown`; under cutter compensation where the tool is led to, as far as that is known."""
-        held = getattr(self.stages.get("compensation"), "held", None)
-        if held is None:
+        stage: Any = self.stages.get("compensation")
+        led = stage.led(self) if hasattr(stage, "led") else None  # behind G40 there is another stage
+        if led is None:
             return self.shown(i)
-        stage: Any = self.stages["compensation"]
-        space = self.to_space(self.position)
-        space[stage.u], space[stage.v] = (p + s for p, s in zip(held.path.end, stage.shift, strict=True))
-        place = self.to_program(space)[i]
+        place: float = led[i]
         return place / self.unit if i in LINEAR else place
 
     def has_number(self, index: float) -> bool:
