@@ -36,7 +36,7 @@ from aircut.language.text import COMMENT
 
 LETTERS = frozenset("abcdefghijklmpqrstuvwxyz@^$")
 KEYWORD = re.compile("endsub|sub|call|return|elseif|else|endif|if|endwhile|while|do|endrepeat|repeat|break|continue")
-LABEL = re.compile(r"/?(?:n(\d+)(?:\.\d*)?)?")
+LABEL = re.compile(r"/?(?:n(\d+)(?:\.\d+)?)?")
 START = re.compile(r"/?(?:n\d+\.?\d*)?o")
 ANY_NAME = re.compile(r"[^>]*")
 DIRECT = 5399  # numbered parameters up to this one are read as they are stored

@@ -136,6 +136,8 @@ class Flow:
         if search.call:
             if name == search.label and line.keyword in ("", "sub"):
                 self.enter_found(line, name, search)
+            elif name == search.label and line.keyword in ("endsub", "return"):
+                self.give_back(to_value(line))
             return
         if line.keyword in ("", "sub") and search.kinds == ("endsub",):
             raise refuse("a subroutine inside a subroutine")
@@ -295,6 +297,8 @@ class Flow:
         self.nothing(line)
         if self.stack and self.stack[-1].fanuc:
             raise refuse("a definition in a subroutine of M98", KINDS)
+        if self.stack:  # in a subroutine that was called another SUB does nothing
+            return
         if name in self.marks:
             raise refuse(f"the definition of {name} stands where the program runs into it", "put it behind M2")
         self.mark(name, "sub")

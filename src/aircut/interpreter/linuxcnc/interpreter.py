@@ -38,6 +38,8 @@ from aircut.language.text import COMMENT
 from aircut.machine import Machine
 from aircut.source import Source
 
+#: A line number with more than one point: where lines are passed over, nobody minds.
+DOTTED = re.compile(rb"[ \t]*/?[ \t]*n[ \t]*\d[\d \t]*\.[\d \t]*\.", re.IGNORECASE)
 NO_MODE = "g-0.1"  # the motion mode after a spline of points: it reads as -1
 STRETCH = 4  # lines without others among them that the fast lane is worth while for
 FULL = CHUNK * ROW.size
@@ -279,7 +281,12 @@ class Interpreter(Marked):
             return
         if self.settings.block_delete and source.raw(self.line).lstrip().startswith(b"/"):
             return
-        line = text.line(self.line)
+        try:
+            line = text.line(self.line)
+        except Refusal:
+            if self.flow.search is not None and DOTTED.match(source.raw(self.line)):
+                return
+            raise
         if line.oline is not None:
             self.flow.step(line.oline)
             return

@@ -32,7 +32,7 @@ def follows(m: State, w: Words, what: str) -> None:
 def beside(m: State, w: Words) -> bool:
     """Beside a contour G33 and G33.1 are straight moves like others: no spindle is asked for. Raises Refusal."""
     stage = m.stages.get(SLOT)
-    if stage is None:
+    if stage is None or not m.cutter:  # behind G40 there still is one, for the first move
         return False
     with threaded(stage):
         go(m, FEED, goal(m, w), steady_speed(m))
