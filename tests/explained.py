@@ -27,16 +27,6 @@ def numbers(line: str) -> list[float]:
     return [float(number) for number in NUMBER.findall(line)]
 
 
-def exchanged(text: str, ours: str, theirs: str, offset: float) -> bool:
-    return (
-        re.search(r"G0?(84|74)(?!\d)", text, re.IGNORECASE) is not None
-        and "STRAIGHT_FEED" in ours
-        and "STRAIGHT_FEED" in theirs
-        and ours != theirs
-        and sorted(numbers(ours)) == sorted(numbers(theirs))
-    )
-
-
 def huge(text: str, ours: str, theirs: str, offset: float) -> bool:
     x, y = numbers(ours), numbers(theirs)
     same = len(x) == len(y) and NUMBER.sub("#", ours) == NUMBER.sub("#", theirs)
@@ -75,9 +65,6 @@ def declared(text: str, ours: str, theirs: str, offset: float) -> bool:
 
 
 EXPLAINED = (
-    Explained(
-        "tapping", "outside G17 it exchanges the axes of the feeds of G74 and G84: the tool would move aside", exchanged
-    ),
     Explained(
         "huge",
         "numbers and offsets above a million millions have but sixteen digits that mean something",

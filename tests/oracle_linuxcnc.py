@@ -595,8 +595,7 @@ class Writer:
     # --- cycles, splines, threads, compensation
 
     def cycle(self) -> str:
-        # In G18 and G19 the interpreter exchanges the axes of the feeds of tapping, which is a fault of its own.
-        code = self.pick("G81 G82 G83 G73 G85 G89 G86 G88 G87" + (" G84 G74" if self.plane == "G17" else ""))
+        code = self.pick("G81 G82 G83 G73 G85 G89 G86 G88 G87 G84 G74")
         first, second, _, _, across, _ = PLANES[self.plane]
         base = self.random.choice((-10, 0, 5))
         extra = {"G82": " P0.5", "G83": " Q3", "G73": " Q4", "G89": " P1", "G86": " P0.2", "G88": " P0.1"}.get(code, "")

@@ -66,10 +66,6 @@ def test_listing_equals_the_oracle(only: str, tmp_path: Path) -> None:
 
 def test_what_is_explained_is_no_more_than_that() -> None:
     before = MET.copy()
-    feed = "line 3:\n  ours   STRAIGHT_FEED(1.0000, 2.0000, 3.0000)\n  theirs STRAIGHT_FEED(3.0000, 1.0000, 2.0000)"
-    assert explained("G19 G84 X1", feed)
-    assert not explained("G19 G81 X1", feed)
-    assert not explained("G84 X1", feed.replace("theirs STRAIGHT_FEED(3", "theirs STRAIGHT_FEED(4"))
     far = "line 3:\n  ours   ARC_FEED(1.0000, 7739790296528284.0000)\n  theirs ARC_FEED(1.0000, 7739790296528283.0000)"
     assert explained("", far)
     assert not explained("", far.replace("theirs ARC_FEED(1.0000", "theirs ARC_FEED(1.0002"))
@@ -80,4 +76,4 @@ def test_what_is_explained_is_no_more_than_that() -> None:
     assert explained("G38.3 A5", back)
     assert not explained("G38.3 A5", back.replace("746", "747"[::-1]))
     assert not explained("G1 A5", back)
-    assert MET - before == {"tapping": 1, "huge": 2, "still": 1}
+    assert MET - before == {"huge": 2, "still": 1}

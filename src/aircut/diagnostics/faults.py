@@ -227,6 +227,12 @@ TILTED = Fault("tilted", "{code} is not possible in a tilted plane", "program G6
 CYCLE_INVERSE_TIME = Fault("cycle-inverse-time", "{code} cannot run under G93", "program G94 and F before")
 CYCLE_COMPENSATION = Fault("cycle-compensation", "{code} cannot run with cutter compensation", "program G40 before")
 CYCLE_SPINDLE = Fault("cycle-spindle", "{code} needs a turning spindle", "program S and M3 before")
+TAPPED_ASIDE = Fault(
+    "tapped-aside",
+    "outside G17 LinuxCNC exchanges the axes of the feeds of {code}: the tool moves aside in the work",
+    "tap in G17, or with G33.1",
+    Severity.WARNING,
+)
 CYCLE_ROTARY = Fault("cycle-rotary", "{axis} moves in {code}", "turn rotary axes in a block before")
 CYCLE_BELOW = Fault("cycle-below", "{code}: R (at {r:g}) lies below the bottom of the hole ({axis}{bottom:g})")
 COMPENSATING = Fault("compensating", "{code} is not possible with cutter radius compensation on", "program G40 before")

@@ -29,12 +29,11 @@ from aircut.geometry.offsetting import (
     square_end,
 )
 from aircut.interpreter.path import Onward, Place, flush
-from aircut.interpreter.state import State
+from aircut.interpreter.state import INCH, State
 from aircut.interpreter.table import Code
 
 TRAVERSE, FEED, ARC = int(Kind.TRAVERSE), int(Kind.FEED), int(Kind.ARC)
 STILL = 1e-9  # mm: shorter steps in the plane are none
-GROWTH = 0.0254  # radians by which an arc may grow when it is cut back, as by rounded programs
 
 
 class Move(NamedTuple):
@@ -229,7 +228,7 @@ class Compensation:
 
     def check(self, m: State, held: Held, end: Point) -> None:
         """Refuse a move cut back beyond its own start: a line would go backwards, an arc be longer than before."""
-        if backwards(held, end) if held.path.center is None else grows(held, end):
+        if backwards(held, end) if held.path.center is None else grows(held, end, growth(m)):
             raise self.gouging(m, held.before, held.move)
 
     def gouging(self, m: State, first: Move | None, second: Move) -> Refusal:
@@ -344,12 +343,17 @@ def backwards(held: Held, end: Point) -> bool:
     return (end[0] - start[0]) * ahead[0] + (end[1] - start[1]) * ahead[1] < -STILL
 
 
-def grows(held: Held, end: Point) -> bool:
+def grows(held: Held, end: Point, most: float) -> bool:
     """Whether an arc that ends here would sweep more than it was meant to."""
     path, guide = held.path, held.guide
     assert path.center is not None and guide.center is not None
     meant = abs(arcs.sweep(guide.start, guide.end, guide.center, guide.turns))
-    return abs(arcs.sweep(path.start, end, path.center, path.turns)) - meant > GROWTH
+    return abs(arcs.sweep(path.start, end, path.center, path.turns)) - meant > most
+
+
+def growth(m: State) -> float:
+    """Radians by which an arc may grow when it is cut back, as by rounded programs."""
+    return m.dialect.cutter.growth[m.unit == INCH]
 
 
 def place_of(m: State, move: Move | None) -> str:

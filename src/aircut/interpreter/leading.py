@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from aircut.canon import ROW, Kind
 from aircut.geometry.offsetting import Element
-from aircut.interpreter.compensation import Held, Move, Nist
+from aircut.interpreter.compensation import Held, Move, Nist, growth
 from aircut.interpreter.path import RECORDER
 from aircut.interpreter.tipping import NOWHERE
 from aircut.kernels import beside, plain
@@ -56,7 +56,7 @@ class Leading:
         work = array("d", [0.0] * 21), array("d", [0.0] * 4)
         words = contour.cast("q")
         taken = beside.lead(
-            array("d", [stage.side * stage.radius, m.dialect.cutter.straight, *stage.shift, *m.space_box]),
+            array("d", [stage.side * stage.radius, m.dialect.cutter.straight, *stage.shift, *m.space_box, growth(m)]),
             held, stage.u, stage.v, stage.loose, contour.cast("d"), words, moves,
             written.cast("d"), written.cast("q"), self.firsts, last, *work,
         )  # fmt: skip

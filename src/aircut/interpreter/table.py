@@ -172,6 +172,7 @@ class CutterRules(NamedTuple):
     flushes: frozenset[str] = frozenset()  # codes before which no move is held back any longer
     at_once: frozenset[str] = frozenset()  # events that do not wait behind a move held back
     straight: float = 0.001  # radians: a smaller change of direction is no corner
+    growth: tuple[float, float] = (0.0254, 0.0254)  # radians that an arc may grow by, in mm and inches
     plunge_first: bool = True  # moves across the plane may come before the entry
     zero_is_loaded: bool = False  # D0 means the loaded tool, not the radius 0
 

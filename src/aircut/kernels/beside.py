@@ -25,7 +25,7 @@ else:
 
 COMPILED = cython.compiled
 
-FACTS, HELD = 16, 19
+FACTS, HELD = 17, 19
 WIDTH = 11  # eight-byte words of a row: six axes, two of an arc, the feed, two of integers
 #: Bits of a row's integers: line and tool; turns, file, kind, plane, flags.
 LINE, TURNS = 0xFFFFFFFF, 0xFFFF
@@ -35,7 +35,6 @@ TAU = 6.283185307179586
 PI = 3.141592653589793
 BACK = 0.06  # radians from a half turn: nearer ones are not for here
 STILL = 1e-9  # mm: shorter steps in the plane are none
-GROWTH = 0.0254  # radians by which an arc may grow when it is cut back
 PARALLEL = 1e-12
 TOUCH = 1e-9
 FULL_CIRCLE = 1e-6
@@ -206,13 +205,15 @@ def crossings(e: cython.double[::1], w: cython.double[::1]) -> cython.int:
 @cython.cfunc
 @cython.boundscheck(False)
 @cython.wraparound(False)
-def spoils(held: cython.double[::1], eu: cython.double, ev: cython.double, w: cython.double[::1]) -> cython.bint:
+def spoils(
+    facts: cython.double[::1], held: cython.double[::1], eu: cython.double, ev: cython.double, w: cython.double[::1]
+) -> cython.bint:
     """Whether the held move must not end here: a line would go backwards, an arc be longer than before."""
     if held[6] == 0.0:
         heading(held, 0, 0.0, 0.0, w)
         return (eu - held[7]) * w[0] + (ev - held[8]) * w[1] < -STILL
     meant: cython.double = fabs(sweep(held[9], held[10], held[11], held[12], held[4], held[5], held[6]))
-    return fabs(sweep(held[7], held[8], eu, ev, held[4], held[5], held[6])) - meant > GROWTH
+    return fabs(sweep(held[7], held[8], eu, ev, held[4], held[5], held[6])) - meant > facts[16]
 
 
 @cython.cfunc
@@ -406,14 +407,14 @@ def lead(
                 break
             eu = w[0]
             ev = w[1]
-            if spoils(held, eu, ev, w):
+            if spoils(facts, held, eu, ev, w):
                 break
             e[7] = eu
             e[8] = ev
         else:
             eu = held[11]
             ev = held[12]
-            if not (loose and (e[20] != 0.0 or angle >= -facts[1])) and spoils(held, eu, ev, w):
+            if not (loose and (e[20] != 0.0 or angle >= -facts[1])) and spoils(facts, held, eu, ev, w):
                 break
             if angle < -facts[1]:
                 corner = True

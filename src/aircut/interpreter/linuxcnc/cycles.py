@@ -203,6 +203,8 @@ def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, again: bool, m
             match do:
                 case Do.RAPID:
                     to_height(m, TRAVERSE, value)
+                case Do.FEED if cycle.steps is tap:
+                    tap_to_height(cycle, m, value)
                 case Do.FEED:
                     to_height(m, FEED, value)
                 case Do.BY_HAND:
@@ -232,6 +234,24 @@ def drive(cycle: Cycle, hole: Hole, sticky: Sticky, repeats: int, again: bool, m
                     if overridden[1]:
                         m.follow_speed(True, number)
     end_exact(m, flags)
+
+
+def tap_to_height(cycle: Cycle, m: State, height: float) -> None:
+    """A feed of a tap. LinuxCNC turns its axes into the plane once more: outside G17 the tool is led aside.
+
+    It knows nothing of that: from the position that was meant it goes on. Raises Refusal in planes of U, V and W.
+    """
+    if m.plane_code % 10:
+        raise wrong(f"{cycle.name} taps along X, Y and Z only")
+    u, v, normal = axes_of(m)
+    meant = m.position[:]
+    meant[normal] = height * m.unit
+    place = meant[:]
+    place[u], place[v], place[normal] = meant[:3]
+    if place != meant:
+        m.warn(F.TAPPED_ASIDE, code=cycle.name)
+    go(m, FEED, place, steady_speed(m))
+    m.position = meant
 
 
 def by_hand(m: State, height: float) -> None:

@@ -7,7 +7,8 @@ Sources: 001 (subroutine parameters); the canonical listing, section 9.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -121,11 +122,21 @@ class Flow:
 
     def step(self, line: OLine) -> None:
         """Carry out an O-word; sets the interpreter's next line. Raises Refusal."""
-        name = self.name(line)
-        if self.search is not None:
-            self.passed(line, name)
+        if self.search is None:
+            self.WORDS[line.keyword](self, line, self.name(line))
             return
-        self.WORDS[line.keyword](self, line, name)
+        with self.unrun():
+            self.passed(line, self.name(line))
+
+    @contextmanager
+    def unrun(self) -> Iterator[None]:
+        """For what is computed among lines that are passed over: in a definition names without a value read as 0."""
+        m = self.run.state
+        m.defining = self.search is not None and self.search.kinds == ("endsub",)
+        try:
+            yield
+        finally:
+            m.defining = False
 
     def passed(self, line: OLine, name: str) -> None:
         """An O-word among lines that are passed over."""
@@ -142,7 +153,7 @@ class Flow:
         if line.keyword in ("", "sub") and search.kinds == ("endsub",):
             raise refuse("a subroutine inside a subroutine")
         if line.keyword == "return" and name == search.label and search.kinds == ("endsub",):
-            self.give_back_unrun(line)
+            self.give_back(to_value(line))
             return
         label = name if line.keyword == "endsub" else self.scoped(name)
         if label != search.label:
@@ -306,7 +317,7 @@ class Flow:
 
     def endsub(self, line: OLine, name: str, sought: bool = False) -> None:
         if sought:
-            self.give_back_unrun(line)
+            self.give_back(to_value(line))
             self.called = False
             return
         self.return_(line, name)
@@ -326,18 +337,6 @@ class Flow:
         m = self.run.state
         m.value = marked(values[0]) if values else 0.0
         m.value_returned = bool(values)
-
-    def give_back_unrun(self, line: OLine) -> None:
-        """The same, computed as the definition is passed over.
-
-        Names without a value read as 0, and nobody looks at what follows the value.
-        """
-        m = self.run.state
-        m.defining = True
-        try:
-            self.give_back(to_value(line))
-        finally:
-            m.defining = False
 
     def call_(self, line: OLine, name: str, sought: bool = False) -> None:
         self.enter(name, self.values(line, 0, LOCALS), 1)

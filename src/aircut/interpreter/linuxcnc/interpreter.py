@@ -347,7 +347,8 @@ class Interpreter(Marked):
         if line.code.startswith(".", start.end()):
             raise Refusal(F.UNKNOWN_CODE, where=(start.start(1) - 1, start.end() + 1), code="M98.")
         block = line.block or self.compile(line)
-        values = self.values(block, line)
+        with self.flow.unrun():
+            values = self.values(block, line)
         names, words = gather(block.letters, values, self.dialect)
         if "p" not in words:
             raise Refusal(F.MISSING_WORD, code="M98", word="P", meaning="the number of the subroutine")

@@ -22,7 +22,7 @@ from aircut.interpreter.linuxcnc import (
 )
 from aircut.interpreter.linuxcnc.interpreter import Interpreter
 from aircut.interpreter.linuxcnc.named import NAMED
-from aircut.interpreter.linuxcnc.state import LAST, NINE
+from aircut.interpreter.linuxcnc.state import LAST, NINE, PER_MM
 from aircut.interpreter.table import Code, CutterRules, Dialect
 from aircut.machine.config import UNBOUNDED
 from aircut.machine.tools import Tool
@@ -50,7 +50,7 @@ def key(row: Code) -> str:
 
 #: The tools that the stand-alone interpreter starts with, mm.
 #: mm, as the interpreter converts its own tools: an entry exactly as long as their radius is long enough.
-THEIR_INCH = 1 / 0.03937007874016
+THEIR_INCH = 1 / PER_MM
 TOOLS = (
     Tool(1, slot=1, z=0.511 * THEIR_INCH, diameter=0.125 * THEIR_INCH),
     Tool(2, slot=2, z=0.1 * THEIR_INCH, diameter=0.0625 * THEIR_INCH),
@@ -78,6 +78,6 @@ LINUXCNC = Dialect(
     takes_ini=True,
     table_unit=THEIR_INCH,
     parameters=range(1, LAST + 1),
-    cutter=CutterRules(straight=0.05, at_once=compensation.AT_ONCE, plunge_first=False),
+    cutter=CutterRules(straight=0.05, growth=(0.0254, 0.001), at_once=compensation.AT_ONCE, plunge_first=False),
     tools=TOOLS,
 )

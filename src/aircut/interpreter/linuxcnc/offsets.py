@@ -14,9 +14,9 @@ from aircut.diagnostics import faults as F
 from aircut.interpreter.linuxcnc.arranging import given
 from aircut.interpreter.linuxcnc.modes import said
 from aircut.interpreter.linuxcnc.motion import wrong
-from aircut.interpreter.linuxcnc.state import G92, LINEAR, NUMBERED_NINE, ORIGINS, STEP, SYSTEM, State
+from aircut.interpreter.linuxcnc.state import G92, NUMBERED_NINE, ORIGINS, STEP, SYSTEM, State
 from aircut.interpreter.linuxcnc.turning import check_turns
-from aircut.interpreter.state import EQUAL, INCH
+from aircut.interpreter.state import EQUAL
 from aircut.interpreter.table import Code, Group, Order, Words
 
 SYSTEMS = 9
@@ -166,7 +166,7 @@ def set_system(here: bool, m: State, w: Words) -> None:
     else:
         for i, letter in NUMBERED_NINE:
             if letter in w:
-                m.numbered[first + i] = m.axis(w, i) / (INCH if i in LINEAR else 1.0)
+                m.numbered[first + i] = m.to_kept(m.axis(w, i), i)
     if system == m.system:
         turned = rotation != m.rotation
         moved = m.position[:]
@@ -202,7 +202,7 @@ def store_here(m: State, w: Words, first: int, rotation: float) -> None:
     reads[0], reads[1] = m.turned(reads[0], reads[1], rotation)
     for i, letter in NUMBERED_NINE:
         if letter in w or (i < 2 and rotation and ("x" in w or "y" in w)):
-            m.numbered[first + i] = (space[i] - reads[i]) / (INCH if i in LINEAR else 1.0)
+            m.numbered[first + i] = m.to_kept(space[i] - reads[i], i)
 
 
 def reload_tools(m: State, w: Words) -> None:

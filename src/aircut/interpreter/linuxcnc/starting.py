@@ -9,8 +9,7 @@ from aircut.interpreter import path
 from aircut.interpreter.cutter import SLOT
 from aircut.interpreter.linuxcnc.offsets import tell_rotation, tell_shift, tell_system
 from aircut.interpreter.linuxcnc.spindles import STANDING
-from aircut.interpreter.linuxcnc.state import G92, KEPT_LENGTHS, ORIGINS, POSITION, STEP, SYSTEM, State
-from aircut.interpreter.state import INCH
+from aircut.interpreter.linuxcnc.state import G92, KEPT_LENGTHS, ORIGINS, PER_MM, POSITION, STEP, SYSTEM, State
 from aircut.machine import memory
 
 SYSTEMS = 9
@@ -56,7 +55,7 @@ def remembered(m: State) -> dict[int, float]:
     kept = {number: m.numbered[number] for number in sorted({*given, *PERSISTENT})}
     kept |= {n: m.shown(n - POSITION) for n in kept if POSITION <= n < POSITION + 9}
     if machine.parameters is None:
-        kept = {n: v * INCH if n in KEPT_LENGTHS else v for n, v in kept.items() if n in memory.PERSISTENT}
+        kept = {n: v / PER_MM if n in KEPT_LENGTHS else v for n, v in kept.items() if n in memory.PERSISTENT}
     return kept
 
 

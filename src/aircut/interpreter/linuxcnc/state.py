@@ -36,6 +36,7 @@ TOOL_DATA = 5400
 KEPT_LENGTHS = frozenset(
     first + i for first in (G28, G30, G92 + 1, *(ORIGINS + STEP * n for n in range(9))) for i in LINEAR
 )
+PER_MM = 0.03937007874016  # inches: so LinuxCNC converts what parameters and tables keep, but for programs in inches
 DEBUGGING = 5599
 FAULTS = (5600, 5601)  # of the tool changer
 ARGUMENTS = "n_args"  # name of the number of a call's arguments, where the INI file wants it
@@ -98,7 +99,7 @@ class State(house.State):
         self.value = 0.0  # of the last return
         self.value_returned = False
         self.remaps: tuple[str, ...] = ()  # codes whose subroutines run, the innermost last
-        self.defining = False  # names without a value read as 0, behind an ENDSUB that is passed over
+        self.defining = False  # names without a value read as 0, in a definition that is passed over
         self.spline: list[tuple[float, float, float]] = []  # control points of G5.2: x, y, weight
         self.spline_order = 0
         self.spline_end: tuple[float, float] | None = None  # P Q of the last G5
@@ -112,7 +113,7 @@ class State(house.State):
         """Take the parameters before the run: the machine's folder has lengths in mm, a parameter file in inches."""
         for number, value in machine.variables.items():
             if number in KEPT_LENGTHS:
-                value /= INCH
+                value *= PER_MM
             if 0 < number <= LAST:
                 self.numbered[number] = value
         for number, value in (machine.parameters or {}).items():
@@ -189,12 +190,21 @@ class State(house.State):
 
     def stored(self, first: int) -> list[float]:
         """Nine parameters of lengths and angles, mm and degrees."""
-        return [self.numbered[first + i] * (INCH if i in LINEAR else 1.0) for i in range(9)]
+        values = self.numbered[first : first + 9]
+        if self.unit == INCH:
+            return [value * INCH if i in LINEAR else value for i, value in enumerate(values)]
+        return [value / PER_MM if i in LINEAR else value for i, value in enumerate(values)]
+
+    def to_kept(self, value: float, axis: int) -> float:
+        """A length (mm) or angle as parameters have it."""
+        if axis not in LINEAR:
+            return value
+        return value / INCH if self.unit == INCH else value * PER_MM
 
     def store(self, first: int, place: list[float]) -> None:
         """Put nine lengths and angles into parameters."""
         for i, value in enumerate(place):
-            self.numbered[first + i] = value / INCH if i in LINEAR else value
+            self.numbered[first + i] = self.to_kept(value, i)
 
     def told_shift(self) -> list[float]:
         return self.shift
@@ -295,8 +305,8 @@ class State(house.State):
     def show_tool(self) -> None:
         """Fill the parameters of the tool in the spindle."""
         tool = self.slots[0]
-        data = (float(tool.id), *(v / INCH if i in LINEAR else v for i, v in enumerate(tool.offsets())),
-                tool.diameter / INCH, tool.p1, tool.p2, tool.p3)  # fmt: skip
+        data = (float(tool.id), *(v * PER_MM if i in LINEAR else v for i, v in enumerate(tool.offsets())),
+                tool.diameter * PER_MM, tool.p1, tool.p2, tool.p3)  # fmt: skip
         self.numbered[TOOL_DATA : TOOL_DATA + len(data)] = data
 
     def slot_of(self, number: int) -> int:
