@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 import aircut
-from aircut.interpreter import interpreter
+from aircut.interpreter import flow
 from aircut.interpreter.running import Limits
 from aircut.machine import built_in
 
@@ -101,8 +101,8 @@ class Writer:
 def run(text: str, woven: bool, keep_going: bool, monkeypatch: pytest.MonkeyPatch) -> tuple[Any, ...]:
     with monkeypatch.context() as patch:
         if not woven:
-            patch.setattr(interpreter, "weave", lambda unit, first: None)
-            patch.setattr(interpreter, "weave_routine", lambda unit, routine: None)
+            patch.setattr(flow, "weave", lambda unit, first: None)
+            patch.setattr(flow, "weave_routine", lambda unit, routine: None)
         result = aircut.loads(text).run(built_in("XYZA"), keep_going=keep_going, limits=Limits(blocks=20_000))
     events = [(event.at, event.name, event.values, event.line, event.file) for event in result.events]
     ran = result._interpreter
