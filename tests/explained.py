@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Callable, Sequence
+from math import hypot
 from typing import NamedTuple
 
 NUMBER = re.compile(r"-?\d+\.\d+")
@@ -38,7 +39,10 @@ def still(text: str, ours: str, theirs: str, offset: float) -> bool:
     if not re.search(r"G38\.", text, re.IGNORECASE) or len(x) != len(y):
         return False
     steps = [abs(p - q) for p, q in zip(x, y, strict=True) if abs(p - q) > 1e-4]
-    return all(any(abs(step - off) < 1e-3 for off in BACK_OFF) for step in steps)
+    if all(any(abs(step - off) < 1e-3 for off in BACK_OFF) for step in steps):
+        return True
+    turned = re.search(r"^[^XYZ(\n]*[ABC][^XYZ(\n]*$", text, re.IGNORECASE | re.MULTILINE) is not None
+    return turned and "STRAIGHT_" in ours and x[3:] == y[3:] and any(hypot(*steps) <= 2.0 * off for off in BACK_OFF)
 
 
 def unset(text: str, ours: str, theirs: str, offset: float) -> bool:

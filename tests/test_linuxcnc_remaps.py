@@ -12,6 +12,7 @@ import oracle
 import oracle_linuxcnc
 from aircut import dialects
 from aircut.cli.main import cli
+from aircut.diagnostics import Severity
 from aircut.machine import MachineError, inifile
 
 needs_oracle = pytest.mark.skipif(oracle.PROGRAM is None, reason="rs274 (linuxcnc-uspace) is not installed")
@@ -202,8 +203,6 @@ def test_random_programs_with_remapped_codes(tmp_path: Path) -> None:
         ("G88.1 modalgroup=2 ngc=show", "modalgroup is 1 for G codes"),
         ("T modalgroup=6 ngc=show", "T, S and F have no modal group"),
         ("M400 ngc=show argspec=P?", "argspec is made of letters"),
-        ("M400 python=show", "python= is Python, which is not run here"),
-        ("M6 modalgroup=6 prolog=a ngc=show epilog=b", "prolog= is Python"),
         ("M400 ngc=show\nREMAP=M0400 ngc=show", "M400 is remapped twice"),
     ],
 )
@@ -218,11 +217,31 @@ def test_faults_of_remaps_are_told(value: str, said: str, tmp_path: Path) -> Non
         inifile.load(ini)
 
 
-@pytest.mark.parametrize("code", ["M3", "M101", "G1", "G43"])
-def test_codes_that_cannot_be_remapped(code: str, tmp_path: Path) -> None:
-    (tmp_path / "show.ngc").write_text("o<show> sub\no<show> endsub\n")
-    ini = tmp_path / "machine.ini"
-    ini.write_text(f"[RS274NGC]\nSUBROUTINE_PATH={tmp_path}\nREMAP={code} ngc=show\n")
+def remapped(value: str, folder: Path) -> Path:
+    (folder / "show.ngc").write_text("o<show> sub\no<show> endsub\n")
+    ini = folder / "machine.ini"
+    ini.write_text(f"[RS274NGC]\nSUBROUTINE_PATH={folder}\nREMAP={value}\n")
+    return ini
+
+
+@needs_oracle
+@pytest.mark.parametrize("value", ["M3 modalgroup=7", "M8 modalgroup=8", "M101", "G1", "G70", "G80 modalgroup=1"])
+def test_codes_that_no_remap_changes(value: str, tmp_path: Path) -> None:
+    ini = remapped(f"{value} ngc=show", tmp_path)
+    text = "S100\nG1 X1 F100\nG43\nM3 M8\nG0 X2\nG80\nM2\n"
+    answer = oracle.answer(text, tmp_path, ["-i", str(ini)])
+    machine = dialects.machine(dialects.load("linuxcnc"))
+    machine.ini = inifile.load(ini)
+    result = aircut.loads(text, "linuxcnc").run(machine=machine)
+    assert answer.accepted
+    assert not oracle.differ([line.rstrip("\n") for line in result.canon()], answer.listing)
+    assert [(d.code, d.file) for d in result.diagnostics] == [("idle-remap", str(ini))]
+    assert f"REMAP={value.partition(' ')[0]}" in result.diagnostics[0].message
+
+
+@pytest.mark.parametrize("code", ["M3", "M30", "G43", "G4", "G90", "G54"])
+def test_remaps_that_break_a_code_are_refused(code: str, tmp_path: Path) -> None:
+    ini = remapped(f"{code} ngc=show", tmp_path)
     machine = dialects.machine(dialects.load("linuxcnc"))
     machine.ini = inifile.load(ini)
     with pytest.raises(MachineError, match=f"no remap of {code}"):
@@ -231,3 +250,21 @@ def test_codes_that_cannot_be_remapped(code: str, tmp_path: Path) -> None:
     done = CliRunner().invoke(cli, ["run", str(tmp_path / "part.ngc"), "--dialect", "linuxcnc", "--ini", str(ini)])
     assert done.exit_code == 2
     assert f"no remap of {code}" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("value", "line"),
+    [
+        ("M400 python=show", "M400"),
+        ("M6 modalgroup=6 prolog=a ngc=show epilog=b", "T1 M6"),
+        ("T prolog=a ngc=show", "T1"),
+        ("G88.6 modalgroup=1 argspec=XYZp py=g886", "G88.6 X1"),
+    ],
+)
+def test_python_is_refused_where_it_would_run(value: str, line: str, tmp_path: Path) -> None:
+    machine = dialects.machine(dialects.load("linuxcnc"))
+    machine.ini = inifile.load(remapped(value, tmp_path))
+    assert aircut.loads("G0 X1\nM3 S100\nM2\n", "linuxcnc").run(machine=machine).ok
+    result = aircut.loads(f"G0 X1\n{line}\nM2\n", "linuxcnc").run(machine=machine)
+    assert [(d.code, d.span.line) for d in result.diagnostics if d.severity is Severity.ERROR] == [("python-remap", 2)]
+    assert value.partition(" ")[0] in result.diagnostics[0].message

@@ -76,4 +76,10 @@ def test_what_is_explained_is_no_more_than_that() -> None:
     assert explained("G38.3 A5", back)
     assert not explained("G38.3 A5", back.replace("746", "747"[::-1]))
     assert not explained("G1 A5", back)
-    assert MET - before == {"huge": 2, "still": 1}
+    aside = (
+        "line 3:\n  ours   STRAIGHT_FEED(0.0, -0.3575, 1.3296, 5.0)\n  theirs STRAIGHT_FEED(0.0, -0.3555, 1.3296, 5.0)"
+    )
+    assert explained("G38.3 X1\nA5", aside)
+    assert not explained("G38.3 X1 A5", aside)
+    assert not explained("G38.3 X1\nA5", aside.replace("-0.3555", "0.3555"))
+    assert MET - before == {"huge": 2, "still": 2}

@@ -34,6 +34,17 @@ PYTHON_COMMENT = Fault(
     "LinuxCNC would run it here; what it does to variables or the machine is missing from this run",
     WARNING,
 )
+PYTHON_REMAP = Fault(
+    "python-remap",
+    "the INI file remaps {code} to Python ({option}), which is not run here",
+    "remap it to a subroutine alone (ngc=), or run the program without this REMAP line",
+)
+IDLE_REMAP = Fault(
+    "idle-remap",
+    "[RS274NGC]REMAP={code}: LinuxCNC lets no remap of it come into force",
+    "the code stays what it is built in as, there and here",
+    WARNING,
+)
 MISPLACED_COMMENT = Fault("misplaced-comment", "a comment inside a word", "put the comment before or after the word")
 UNCLOSED_STRING = Fault("unclosed-string", "the string is not closed", 'a string ends with " on the same line')
 MISPLACED_STRING = Fault(

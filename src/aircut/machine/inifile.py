@@ -79,7 +79,8 @@ class Ini:
                 raise MachineError(f"{self.path}: [RS274NGC]REMAP={value}: {error}") from None
             if remap.code in found:
                 raise MachineError(f"{self.path}: [RS274NGC]REMAP: {remap.code.upper()} is remapped twice")
-            if not any((folder / f"{remap.label}.ngc").is_file() for folder in (Path(), *self.folders)):
+            folders = (Path(), *self.folders)
+            if not remap.python and not any((folder / f"{remap.label}.ngc").is_file() for folder in folders):
                 raise MachineError(f"{self.path}: [RS274NGC]REMAP={value}: there is no file {remap.label}.ngc")
             found[remap.code] = remap
         return tuple(found.values())

@@ -1,6 +1,6 @@
 """Codes that an INI file of LinuxCNC remaps to subroutines: `[RS274NGC]REMAP=M400 modalgroup=10 argspec=Pq ngc=name`.
 
-Those written in Python (`python=`, `prolog=`, `epilog=`) are refused.
+Those with Python (`python=`, `prolog=`, `epilog=`) are refused where a program uses them.
 """
 
 from __future__ import annotations
@@ -20,9 +20,10 @@ class Remap(NamedTuple):
     """One of them. group: LinuxCNC's modal group, 0 for T, S and F. arguments: the letters of argspec, in order."""
 
     code: str  # "m400", "g88.1", "t"
-    label: str  # of the subroutine
+    label: str  # of the subroutine; empty for Python
     group: int
     arguments: str = ""
+    python: str = ""  # the option that is Python
 
 
 def parse(value: str) -> Remap:
@@ -38,15 +39,14 @@ def parse(value: str) -> Remap:
         if not equals or not text:
             raise ValueError(f"{option} is no option: they are written name=value")
         given[key.lower()] = text
-    python = next((key for key in ("python", "py", "prolog", "epilog") if key in given), None)
-    if python is not None:
-        raise ValueError(f"{python}= is Python, which is not run here")
-    if "ngc" not in given:
+    python = next((f"{key}={given[key]}" for key in ("python", "py", "prolog", "epilog") if key in given), "")
+    if "ngc" not in given and not python:
         raise ValueError("ngc= names no subroutine")
     arguments = given.get("argspec", "")
     if arguments and not ARGUMENTS.fullmatch(arguments):
         raise ValueError("argspec is made of letters, @, ^ and >")
-    return Remap(code, given["ngc"], group_of(code, given.get("modalgroup", "")), arguments)
+    label = "" if python else given["ngc"]
+    return Remap(code, label, group_of(code, given.get("modalgroup", "")), arguments, python)
 
 
 def group_of(code: str, text: str) -> int:

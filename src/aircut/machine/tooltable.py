@@ -3,8 +3,8 @@
     T1 P1 D+6.000000 Z+42.500000 ;6 mm end mill
 
 Lengths are in the machine's units, which the table does not name. Read as LinuxCNC 2.9
-reads it (`tooldata_read_entry`), but stricter with numbers: T5.5 or D1mm are faults here,
-where LinuxCNC takes the digits and drops the rest.
+reads it, but stricter with numbers: T5.5 or D1mm are faults here, where LinuxCNC takes the
+digits and drops the rest.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import msgspec
 from aircut.machine.tools import EMPTY, Tool
 
 NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?", re.ASCII | re.IGNORECASE)
-WHOLE = re.compile(r"[+-]?\d{1,9}", re.ASCII)
+WHOLE = re.compile(r"[+-]?\d{1,9}(\.0*)?", re.ASCII)  # tool editors write Q2.0
 
 #: Words of lengths, and where they go in a Tool.
 LENGTHS = {"D": "diameter", **{letter: letter.lower() for letter in "XYZUVW"}}

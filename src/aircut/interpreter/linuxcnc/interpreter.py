@@ -50,9 +50,10 @@ class Interpreter(Blocks):
     def __init__(self, source: Source, dialect: Dialect, machine: Machine, settings: Settings | None = None) -> None:
         ini = machine.ini
         self.remaps = ini.remaps if ini is not None else ()
-        if self.remaps:
-            dialect = remapping.extended(dialect, self.remaps)
-        super().__init__(source, dialect, machine, settings)
+        super().__init__(source, remapping.extended(dialect, self.remaps), machine, settings)
+        if ini is not None:
+            for code in remapping.idle(self.remaps, dialect):
+                self.tell(F.IDLE_REMAP.at(str(ini.path), Span(), code=code))
         self.state = State(dialect, machine, self.warn)
         self.mark_sub = ""  # subroutine that the mark stands in
         self.unit = Text(source)

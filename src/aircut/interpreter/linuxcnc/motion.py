@@ -42,7 +42,7 @@ SPREAD_MOST = 100  # but never this many times
 SLOWEST = 0.1  # program units a minute
 TINY = 1e-7
 METER, FOOT = 1000.0, 304.8  # mm
-BACK_OFF = 0.254  # mm from the probed point, back towards the start
+BACK_OFF = {1.0: 0.254, INCH: 0.01}  # program units from the probed point, back towards the start
 STILL = 1e-9  # mm; a shorter way is a rounding error
 
 
@@ -349,10 +349,11 @@ def probe(toward: bool, alarm: bool, m: State, w: Words) -> Generator[Request, A
         elif alarm:
             raise Refusal(F.PROBE_FAILED, reason=FAILURES[reply.state])
         return
-    span = sqrt(sum((place[i] - start[i]) ** 2 for i in (0, 1, 2)))
-    if span > STILL:
-        back = [place[i] + (start[i] - place[i]) * (BACK_OFF / span) if i < 3 else place[i] for i in range(9)]
-        m.told = back
+    steps = [start[i] / m.unit - place[i] / m.unit for i in (0, 1, 2)]
+    span = sqrt(sum(step * step for step in steps))
+    if span > 0.0:
+        off = BACK_OFF[m.unit] / span
+        m.told = [place[i] + steps[i] * off * m.unit if i < 3 else place[i] for i in range(9)]
 
 
 def go_home(stored: int, m: State, w: Words) -> None:

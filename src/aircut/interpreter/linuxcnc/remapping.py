@@ -7,7 +7,7 @@ that stands in its own subroutine is the built-in one. Behavior was learnt by as
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
@@ -30,15 +30,24 @@ TAKES = "".join(sorted(LETTERS - set("@^")))
 
 
 def extended(dialect: Dialect, remaps: tuple[Remap, ...]) -> Dialect:
-    """The language with these codes. Raises MachineError for a code that cannot be remapped."""
+    """The language with these codes, but for those that no remap changes. Raises MachineError for one that breaks."""
+    if not remaps:
+        return dialect
     codes, items = dict(dialect.codes), dict(dialect.items)
     for remap in remaps:
         table = items if remap.group == 0 else codes
         known = table.get(remap.code)
-        if not possible(remap, known):
+        if possible(remap, known):
+            table[remap.code] = row_of(remap, known, dialect)
+        elif known is not None and known.group is not group_of(remap, dialect)[0]:
             raise MachineError(f"[RS274NGC]REMAP: LinuxCNC lets no remap of {remap.code.upper()} come into force")
-        table[remap.code] = row_of(remap, known, dialect)
     return dialect._replace(codes=codes, items=items)
+
+
+def idle(remaps: tuple[Remap, ...], dialect: Dialect) -> list[str]:
+    """The codes among them that stay as they are."""
+    known = dialect.codes
+    return [remap.code.upper() for remap in remaps if not possible(remap, known.get(remap.code))]
 
 
 def possible(remap: Remap, known: Code | None) -> bool:
@@ -52,13 +61,24 @@ def row_of(remap: Remap, known: Code | None, dialect: Dialect) -> Code:
     if remap.group == 0:
         assert known is not None
         group, order = known.group, known.order
-    elif remap.group in MEMBERS:
-        member = dialect.codes[MEMBERS[remap.group]]
-        group, order = member.group, member.order
     else:
-        group, order = (Group.MOTION, Order.MOTION) if remap.code[0] == "g" else (Group.USER, Order.USER)
-    run = partial(start, remap, known)
-    return Code(remap.code.upper(), f"O<{remap.label}>", run, group, order, axes=remap.code[0] == "g", takes=TAKES)
+        group, order = group_of(remap, dialect)
+    run = partial(refuse, remap) if remap.python else partial(start, remap, known)
+    title = f"O<{remap.label}>" if remap.label else remap.python
+    return Code(remap.code.upper(), title, run, group, order, axes=remap.code[0] == "g", takes=TAKES)
+
+
+def group_of(remap: Remap, dialect: Dialect) -> tuple[Group, Order]:
+    """The group that a G or M code is put into, and its place."""
+    if remap.group in MEMBERS:
+        member = dialect.codes[MEMBERS[remap.group]]
+        return member.group, member.order
+    return (Group.MOTION, Order.MOTION) if remap.code[0] == "g" else (Group.USER, Order.USER)
+
+
+def refuse(remap: Remap, m: State, w: Words) -> NoReturn:
+    """Raises Refusal."""
+    raise Refusal(F.PYTHON_REMAP, code=remap.code.upper(), option=remap.python)
 
 
 def start(remap: Remap, known: Code | None, m: State, w: Words) -> None:
