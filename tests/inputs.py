@@ -31,7 +31,8 @@ from aircut.rules.policy import read as read_project
 ROOT = Path(__file__).parent.parent
 LIMITS = Limits(blocks=1500, moves=50_000)
 PATIENCE = 20  # seconds of work after which an input counts as one that hangs
-FOLDER = Path(tempfile.mkdtemp(prefix="aircut-inputs-"))
+HOLDER = tempfile.TemporaryDirectory(prefix="aircut-inputs-")  # gone when the process ends
+FOLDER = Path(HOLDER.name)
 
 
 class Choices:

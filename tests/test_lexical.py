@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -206,3 +207,11 @@ def test_errors_apart(lines):
     codes = {d.code for d in aircut.loads(plain(lines)).run(keep_going=True).diagnostics}
     codes = {code for code in codes if not code.startswith("arc-")}
     assert codes <= {"bad-value", "travel-limit"}, codes  # beyond all machines, or this one
+
+
+@pytest.mark.parametrize("dialect", ["rosetta", "linuxcnc"])
+def test_the_character_that_marks_comments_is_none_in_a_file(dialect: str) -> None:
+    result = aircut.loads("G0\x01X1\nM2\n", dialect).run()
+    assert [(d.code, d.span.column) for d in result.diagnostics] == [("illegal-character", 3)]
+    assert "0x01" in result.diagnostics[0].message
+    assert aircut.loads("G0 (a\x01b) X1\nM2\n", dialect).run().ok

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.language.arithmetic import FUNCTIONS, OPERATORS, Function, Operator
-from aircut.language.text import COMMENT
+from aircut.language.text import COMMENT, illegal_character
 
 DEEPEST = 100  # brackets in brackets
 LONGEST = 2000  # operators in one chain
@@ -93,12 +93,6 @@ WORD = re.compile(r"[a-z]+")
 OPERATOR = re.compile("|".join(re.escape(o.name) for o in sorted(OPERATORS, key=lambda o: -len(o.name))))
 FUNCTION_ROWS = {function.name: function for function in FUNCTIONS}
 OPERATOR_ROWS = {operator.name: operator for operator in OPERATORS}
-
-
-def illegal_character(character: str, where: Where, hint: str = "") -> Refusal:
-    """The Refusal of a character that has no place where it stands."""
-    name = f"“{character}”" if character.isprintable() else f"character {ord(character):#04x}"
-    return Refusal(F.ILLEGAL_CHARACTER, where=where, character=name, hint=hint)
 
 
 class Parser:

@@ -13,9 +13,10 @@ from aircut.diagnostics import Fault, Refusal
 from aircut.diagnostics import faults as F
 
 COMMENT = "\x01"  # stands where a comment stood: separates words, fits into none
+STRAY = "\ufdd0"  # stands for that character itself, which fits nowhere
 
 BLANKS = " \t\r"
-SMALL = {ord(c): None for c in BLANKS} | {c: c + 32 for c in range(ord("A"), ord("Z") + 1)}
+SMALL = {ord(c): None for c in BLANKS} | {c: c + 32 for c in range(ord("A"), ord("Z") + 1)} | {ord(COMMENT): STRAY}
 PIECES = re.compile(r'\(([^()]*)\)|;(.*)|("[^"]*")|([^();"]+)|(.)', re.DOTALL)
 
 
@@ -45,6 +46,13 @@ def clean(text: str) -> Clean:
             at = piece.start()
             raise Refusal(stray_fault(text, at), where=(at, at + 1))
     return Clean("".join(code), tuple(comments))
+
+
+def illegal_character(character: str, where: tuple[int, int], hint: str = "") -> Refusal:
+    """The Refusal of a character that has no place where it stands."""
+    number = ord(COMMENT if character == STRAY else character)
+    name = f"“{character}”" if character.isprintable() else f"character {number:#04x}"
+    return Refusal(F.ILLEGAL_CHARACTER, where=where, character=name, hint=hint)
 
 
 def stray_fault(text: str, at: int) -> Fault:

@@ -10,12 +10,12 @@ from typing import NamedTuple
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
-from aircut.language.text import COMMENT, stray_fault
+from aircut.language.text import COMMENT, STRAY, illegal_character, stray_fault
 
 LONGEST = 253  # bytes with the line end, whatever that is
 BLANKS = " \t\r\n"
 TRAILING = BLANKS + "\v\f"
-SMALL = {ord(c): None for c in BLANKS} | {c: c + 32 for c in range(ord("A"), ord("Z") + 1)}
+SMALL = {ord(c): None for c in BLANKS} | {c: c + 32 for c in range(ord("A"), ord("Z") + 1)} | {ord(COMMENT): STRAY}
 PIECES = re.compile(r"\(([^()]*)\)|(;.*)|([^();]+)|(.)", re.DOTALL)
 PYTHON = re.compile(r";[ \t]*py(run|reload)?,", re.IGNORECASE)  # the only one behind a semicolon that means something
 STRANGE = re.compile(r"[^ -z\x01]")
@@ -80,5 +80,4 @@ def check(code: str) -> None:
         at = code.index(")")
         raise Refusal(F.STRAY_PARENTHESIS, where=(at, at + 1))
     if strange := STRANGE.search(code):
-        character = f"“{strange[0]}”" if strange[0].isprintable() else f"character {ord(strange[0]):#04x}"
-        raise Refusal(F.ILLEGAL_CHARACTER, where=strange.span(), character=character, hint="")
+        raise illegal_character(strange[0], strange.span())
