@@ -20,6 +20,7 @@ COMPENSATED = (
     "G1 Z3", "S300", "G4 P1", "(note)", "F100", "M8", "(MSG,hi)", "T1", "G7\nG8", "G91\nG90", "G61", "G64 P.1", "G97 S30",
     "M3", "M5", "M9", "G90.1\nG91.1", "G94 F80", "M64 P1", "M65 P1", "M62 P2", "M68 E1 Q3", "(DEBUG,#5420 #<_x> #<_y>)",
     "#1=[#1+1]", "M70", "M72", "M19 R30", "G96 S20 D300", "M66 P0 L0", "(PRINT,#5421)", "G52 X0", "G21", "M7", "G4 P0.5", "M0",
+    "M0\nG1 Z2", "M60", "M0\nM0", "M1", "M0\nG0 Z3\nG1 Z1", "G1 Z2\nM0", "M6", "A5", "M0\nA7",
 )  # fmt: skip
 SYSTEMS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
 CODES = [
@@ -579,6 +580,7 @@ class Writer:
         return self.pick((
             f"#2=31 ##2={self.value()}", f"#[30 + #1]={self.value()}", "#31=##2", f"#[31.00001]={self.literal()} G0 X#31",
             f"#3={n}\no[#3] if [{self.pick('0 1')}]\n{inner}\no[{n}] endif", f"o[{n}+0] repeat [2]\n{inner}\no{n} endrepeat",
+            f"#<l>={n}\no[#<l>] if [{self.pick('0 1')}]\n{inner}\no#<l> endif", f"o#<l{n}> repeat [2]\n{inner}\no{n} endrepeat",
             "#[#31]=1", f"#<a>=32 #[#<a>]={self.literal()}", "G[#31-#31] X1", "M[5] F[10+#31*0]", "G0 X[#[5220]] Y##2",
         ))  # fmt: skip
 

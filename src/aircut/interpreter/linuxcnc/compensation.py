@@ -13,7 +13,7 @@ from typing import Any
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
-from aircut.geometry.offsetting import Element, Point, crossings
+from aircut.geometry.offsetting import Element, Point, crossings, heading, offset
 from aircut.interpreter import path
 from aircut.interpreter import state as house
 from aircut.interpreter.compensation import Held, Move, Nist
@@ -37,7 +37,7 @@ class Beside(Nist):
 
     loose = True
     threads = False  # the move that comes is a G33 or G33.1
-    flushed: Element | None = None  # the last move in the plane, where it was written without its corner
+    flushed: Held | None = None  # the last move in the plane, where it was written without its corner
 
     def enter(self, m: house.State, move: Move) -> None:
         super().enter(m, move)
@@ -46,7 +46,12 @@ class Beside(Nist):
     def carry(self, m: house.State, move: Move, onward: Onward) -> None:
         if self.entered:
             self.check_thread()
-        super().carry(m, move, onward)
+        if self.held is None and self.flushed is not None:  # the next corner moves its end too
+            self.straighten(self.flushed)
+            self.behind.append(move)
+            m.out.hold()
+        else:
+            super().carry(m, move, onward)
 
     def around(self, m: house.State, move: Move, start: Point, onward: Onward) -> None:
         self.check_thread()
@@ -99,16 +104,55 @@ class Beside(Nist):
         super().write(m, move._replace(line=m.out.line, file=m.out.file), end, center, turns, onward)
 
     def flush(self, m: Any, *, onward: Onward) -> None:
-        """What is held ends square to its end; an outside corner behind it is gone around all the same."""
-        self.flushed = self.held.move.element if self.held is not None else self.flushed
+        """What is held ends square to its end."""
+        self.flushed = self.held or self.flushed
         super().flush(m, onward=onward)
+        self.free_behind(m, self.tool, onward)
+
+    def free_behind(self, m: house.State, end: Point, onward: Onward) -> None:
+        """Write the moves out of the plane behind a flush."""
+        for move in self.behind:
+            m.out.free(lambda move=move: self.write(m, move, end, None, 0, onward))  # type: ignore[misc]
+        self.behind = []
+
+    def straighten(self, held: Held) -> None:
+        """The corner is then that of a line which goes on as the move did."""
+        element = held.move.element
+        assert element is not None
+        (u, v), (du, dv) = element.end, heading(element, element.end)
+        line = Element((u - du, v - dv), (u, v))
+        path = offset(line, self.side * self.radius)
+        assert path is not None
+        self.flushed = held._replace(move=held.move._replace(element=line), path=path, guide=path)
 
     def join(self, m: house.State, move: Move, onward: Onward) -> None:
-        if self.held is None and self.flushed is not None and move.element is not None:
-            path = self.beside(m, move)
-            if self.corner(self.flushed, move.element) < -m.dialect.cutter.straight:
+        """Behind a flush LinuxCNC works out the corner as ever, though the move before it has been made.
+
+        But an arc back along a line is always an outside corner, and behind an inside corner the next move may end
+        anywhere, unless a move out of the plane is between.
+        """
+        held = self.flushed
+        if self.held is not None or held is None or move.element is None:
+            super().join(m, move, onward)
+            return
+        assert held.move.element is not None
+        path = guide = self.beside(m, move)
+        angle = self.corner(held.move.element, move.element)
+        if angle == pi and held.path.center is not None and path.center is None:
+            angle = -pi
+        straight = m.dialect.cutter.straight
+        unchecked = angle > straight and not self.behind
+        if angle > straight:
+            place = self.cut_back(m, held, move, path)
+            path = path._replace(start=place)
+            self.free_behind(m, place, onward)
+        else:
+            self.free_behind(m, self.tool, onward)
+            if angle < -straight:
                 self.around(m, move, path.start, onward)
-        super().join(m, move, onward)
+            else:
+                path = path._replace(start=held.path.end)
+        self.hold(m, move, path, guide, held.move, unchecked)
 
     def led(self, m: State) -> list[float] | None:
         """Where the tool's center is led to, as far as that is known, in the program's frame; None before the entry."""
