@@ -208,6 +208,14 @@ NAMES = [
 DETAIL = "num_spindles"  # begins a line between a message and the line of the program
 
 
+#: What a program can read of the machine.
+STATE = (
+    "#<_x> #<_y> #<_z> #<_a> #<_abs_x> #<_abs_z> #5061 #5063 #5070 #5211 #5220 #5221 #5223 #5399 #5400 #5403 #5410 #5413 "
+    "#5420 #5421 #5422 #5600 #<_motion_mode> #<_plane> #<_metric> #<_absolute> #<_feed> #<_rpm> #<_value> #<_call_level> "
+    "#<_tool_offset> #<_selected_tool> #<_current_pocket> #<_value_returned> #<_ccomp> #<_coord_system>"
+)
+
+
 class Answer(NamedTuple):
     """What the interpreter made of a program. line: text of the one it refused, message: why."""
 
@@ -307,6 +315,8 @@ class Writer:
 
     def operand(self, depth: int) -> str:
         share = self.random.random()
+        if self.chance(0.06):
+            return self.pick(STATE)
         if depth == 0 or share < 0.5:
             return self.literal(-5, 5)
         if share < 0.7 and self.known:
@@ -523,7 +533,8 @@ class Writer:
         if self.depth > 3:
             return self.straight()
         o = self.next_label()
-        condition = self.pick(("[0]", "[1]", "[#1 gt #2]", f"[{self.expression(1)}]", "[#31 lt 3]"))
+        tested = f"[{self.pick(STATE)} {self.pick('gt lt eq ne ge le')} {self.pick(STATE)}]"
+        condition = self.pick(("[0]", "[1]", "[#1 gt #2]", f"[{self.expression(1)}]", "[#31 lt 3]", tested))
         share = self.random.random()
         if share < 0.4:
             text = f"{o} if {condition}\n{self.body(3)}"
@@ -549,7 +560,10 @@ class Writer:
             return self.straight()
         share = self.random.random()
         if self.subs and share < 0.5:
-            arguments = " ".join(f"[{self.expression(1)}]" for _ in range(self.random.randint(0, 3)))
+            arguments = " ".join(
+                f"[{self.pick(STATE) if self.chance(0.2) else self.expression(1)}]"
+                for _ in range(self.random.randint(0, 3))
+            )
             return f"{self.pick(self.subs)} call {arguments}"
         if self.depth > 0:
             return self.straight()
@@ -599,8 +613,16 @@ class Writer:
     def cycle(self) -> str:
         code = self.pick("G81 G82 G83 G73 G85 G89 G86 G88 G87 G84 G74")
         first, second, _, _, across, _ = PLANES[self.plane]
-        base = self.random.choice((-10, 0, 5))
-        extra = {"G82": " P0.5", "G83": " Q3", "G73": " Q4", "G89": " P1", "G86": " P0.2", "G88": " P0.1"}.get(code, "")
+        base = self.random.choice((-10, 0, 5, 0.3))
+        bite = self.pick("3 4 0.8 1.6 0.1 0.4")
+        extra = {
+            "G82": " P0.5",
+            "G83": f" Q{bite}",
+            "G73": f" Q{bite}",
+            "G89": " P1",
+            "G86": " P0.2",
+            "G88": " P0.1",
+        }.get(code, "")
         if code == "G87":
             extra = " I1 J1 K-2"
         spindle = "M4\n" if code == "G74" else "M3\n" if code in "G84 G86 G87 G88" else ""
@@ -697,7 +719,8 @@ class Writer:
                 "M3.00001", "M3.1", "T1.5", "G0 X1 (a (b)", "G0 X1 (open", "G0 X1)", "G0 X&1", "#0=1", "#5602=1", "#5400=1",
                 "#5420=2", "X#0", "G0 X#5602", "X1e2", "N-5 G0 X1", "N5.5 G0 X1", "G0 N5 X1", "o", "o1", "o1 foo", "o1 if",
                 "o1 endif", "o1 else", "o1 endwhile", "o1 endsub", "o1 break", "o999 call", "o1 return", "G0 X.", "G0 X1..2",
-                "X--1", "G0 X-+3", "G0 X-sqrt[9]", "G0 X-[2]", "G0 X1 /2", "%", "G1 F-1 X1", "S-1", "M-1", "H-2", "P5", "Q3",
+                "X--1", "G0 X-+3", "G0 X-sqrt[9]", "G0 X-[2]", "G0 X1 /2", "%", "G1 F-1 X1", "S-1", "M-1", "H-2", "P5", "Q3", "G1 X1 P-1", "Q-1", "G4 P-1",
+                "G10 L2 P1.5 X1", "G10 L1 P0.6 Z1", "G10 L20 P3.2 X1", "#2.9999=1", "G20 G10 L2 P11 X1",
                 "D3", "E3", "L3", "R3", "K1", "$1", "G96", "G96 D1", "G10 L2 P1.5 X1", "G10 L2 P10 X1", "G10 X1", "G10 L3 P1 X1",
                 "G43 H77", "G43.1", "G52", "G92", "T77", "M61", "M61 Q77", "M66", "M66 P1 E1", "M66 P1 L1", "M62", "M67 Q1",
                 "G53 X1", "G53 G2 X1 I5", "G91 G53 G0 X1", "G90 M99", "M99", "M98 P5", "M98 P1 L0", "G33 Z1", "G81 X1", "G82",

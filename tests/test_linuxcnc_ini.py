@@ -12,9 +12,9 @@ from click.testing import CliRunner
 import aircut
 import oracle
 import oracle_linuxcnc
-from aircut import dialects
 from aircut.cli.main import cli
 from aircut.machine import MachineError, inifile
+from test_oracle_linuxcnc import machine
 
 needs_oracle = pytest.mark.skipif(oracle.PROGRAM is None, reason="rs274 (linuxcnc-uspace) is not installed")
 
@@ -280,9 +280,9 @@ def test_random_programs_under_random_files(tmp_path: Path) -> None:
         file = tmp_path / "machine.ini"
         file.write_text(text)
         answer = oracle.answer(program, tmp_path, ["-i", str(file)])
-        machine = dialects.machine(dialects.load("linuxcnc"))
-        machine.ini = inifile.load(file)
-        result = aircut.loads(program, "linuxcnc").run(machine=machine)
+        made = machine()
+        made.ini = inifile.load(file)
+        result = aircut.loads(program, "linuxcnc").run(made)
         told = "".join(result.canon()).splitlines()
         difference = oracle.differ(told, [line for line in answer.listing if line != "executing"])
         assert not difference, f"seed {seed}\n{text}{difference}"
@@ -342,6 +342,14 @@ PARAMETERS = [
     ("5063 1\n5400 9\n5403 1\n5420 3\n5424 3\n", ngc("F10 G0 X4 A5 B2", "T1 M6", "G38.3 Z5")),
     ("5601 1\n", ngc("(debug,#5601)")),
 ]  # fmt: skip
+
+
+@needs_oracle
+@pytest.mark.parametrize("orientation", [-1, 0, 1, 9, 10, 12])
+def test_tool_table_has_any_orientation(orientation: int, tmp_path: Path) -> None:
+    """10 once ended in an IndexError."""
+    lines = ("G18 G20 F9", "T1 M6", "(debug,#5413)", "G0 X-2 Z-2", "G41", "G1 X0 Z0", "X1", "G40", "G1 X3 Z3")
+    compare(tmp_path, "", ngc(*lines), f"T1 P1 D.02 Q{orientation}\n")
 
 
 @needs_oracle

@@ -244,6 +244,7 @@ TAPPED_ASIDE = Fault(
     "tap in G17, or with G33.1",
     Severity.WARNING,
 )
+LOOSE_VALUE = Fault("loose-value", "LinuxCNC takes {word}{value:g}, though it knows {wanted}", "", Severity.WARNING)
 CYCLE_ROTARY = Fault("cycle-rotary", "{axis} moves in {code}", "turn rotary axes in a block before")
 CYCLE_BELOW = Fault("cycle-below", "{code}: R (at {r:g}) lies below the bottom of the hole ({axis}{bottom:g})")
 COMPENSATING = Fault("compensating", "{code} is not possible with cutter radius compensation on", "program G40 before")

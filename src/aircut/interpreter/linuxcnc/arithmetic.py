@@ -17,6 +17,17 @@ from aircut.language.arithmetic import finite as house_finite
 LEAST_WHOLE = 2.0**31
 
 
+def integer(value: float) -> int | None:
+    """The whole number that a value counts as, by its distance from the one below; None for none."""
+    if not abs(value) < 1e9:
+        return None
+    below = math.floor(value)
+    rest = value - below
+    if rest > 1.0 - EQUAL:
+        return below + 1
+    return None if rest > EQUAL else below
+
+
 def arc_cosine(value: float) -> float:
     if not abs(value) <= 1.0:
         raise Refusal(F.DOMAIN, function="ACOS", value=value)

@@ -6,11 +6,12 @@ Source: 001 Repeated items, Modal groups, Order of execution; the canonical list
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import floor
 from typing import TYPE_CHECKING, NamedTuple
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
-from aircut.interpreter.state import EQUAL
+from aircut.interpreter.linuxcnc.arithmetic import integer
 from aircut.interpreter.table import Code, Dialect, Group
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ AXIS_WORDS = frozenset("xyzabcuvw@^")
 ITEMS = "fst"  # words that are rows of their own
 MOST_M = 4
 WHOLE = {"m": "a whole number", "t": "a whole number", "h": "a whole number", "l": "a whole number"}
-LOWEST = {"f": 0.0, "s": 0.0, "g": 0.0, "m": 0.0, "l": 0.0, "h": -1.0, "t": 0.0}
+LOWEST = {"f": 0.0, "s": 0.0, "m": 0.0, "l": 0.0, "h": -1.0, "t": 0.0}
 TWICE = "@^"  # of these the last counts
 POINT = "G5.2"  # its points may be machine coordinates under G91 too
 TURNS = 0.001  # what a P that counts turns or directions may differ from a whole number
@@ -62,21 +63,23 @@ class Steps(NamedTuple):
 
 def g_name(value: float) -> str:
     """Normalized name of a G code. Raises Refusal."""
-    tenths = int(value * 10.0) if abs(value) < 1e6 else 10**6
+    tenths = floor(value * 10.0) if abs(value) < 1e6 else 10**6
     rest = value * 10.0 - tenths
     if rest > 0.999:
         tenths += 1
     elif rest > 0.001:
         raise Refusal(F.UNKNOWN_CODE, "g", code=f"G{value:g}")
+    if tenths < 0:
+        raise Refusal(F.BAD_VALUE, "g", word="G", value=value, wanted="not below 0")
     return f"g{tenths // 10}.{tenths % 10}" if tenths % 10 else f"g{tenths // 10}"
 
 
 def whole(letter: str, value: float) -> int:
     """A word that must be a whole number. Raises Refusal."""
-    nearest = round(value) if abs(value) < 1e9 else 0
-    if abs(value - nearest) > EQUAL:
+    number = integer(value)
+    if number is None:
         raise Refusal(F.NOT_INTEGER, letter, word=letter.upper(), value=value)
-    return nearest
+    return number
 
 
 def gather(letters: Sequence[str], values: Sequence[float], dialect: Dialect) -> tuple[list[str], dict[str, float]]:
@@ -159,7 +162,7 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
         if row.needs_axes and not axes:
             raise Refusal(F.MISSING_AXES, code=row.name)
         for letter in row.needs:
-            if letter not in letters:
+            if not given(letters, letter):
                 raise Refusal(F.MISSING_WORD, code=row.name, word=letter.upper(), meaning="")
         if written is not None and written.name in row.bars:
             raise Refusal(
@@ -167,8 +170,13 @@ def arrange(names: Sequence[str], letters: Mapping[str, float], modal: Code, dia
             )
     items = [dialect.items[letter] for letter in letters if letter in ITEMS]
     takes = {letter for row in (*rows, *items) for letter in row.takes}
-    for letter in letters:
-        if letter not in AXIS_WORDS and letter not in ITEMS and letter not in takes and given(letters, letter):
+    for letter in letters:  # an unused P is found, whatever its value
+        if (
+            letter not in AXIS_WORDS
+            and letter not in ITEMS
+            and letter not in takes
+            and (letter == "p" or given(letters, letter))
+        ):
             raise Refusal(F.UNUSED_WORD, letter, word=letter.upper())
     order = sorted([*rows, *items], key=lambda row: row.order)
     checked = polar or any(row.fits or row.check or row.counts for row in order)

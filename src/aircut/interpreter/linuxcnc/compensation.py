@@ -26,7 +26,6 @@ from aircut.interpreter.path import Onward, Place
 from aircut.interpreter.table import Code, Group, Order, Words
 from aircut.language.arithmetic import EQUAL
 
-ORIENTATIONS = 9
 BACK = 0.05  # radians from a half turn
 #: Events that do not wait behind a move held back.
 AT_ONCE = frozenset(("MESSAGE", "LOG", "PRINT", "SELECT_TOOL", "SELECT_PLANE", "USE_LENGTH_UNITS"))
@@ -244,6 +243,9 @@ def begin(m: State, side: int, radius: float, orientation: int) -> None:
     said(m, f"cutter radius compensation on {'left' if side > 0 else 'right'}")
     m.cutter = 41 if side > 0 else 42
     m.out.at_once = AT_ONCE
+    if not 0 <= orientation < len(SHIFTS):
+        m.warn(F.LOOSE_VALUE, word="orientation ", value=orientation, wanted="0 to 9: the tool counts as round")
+        orientation = 0
     shift = (SHIFTS[orientation][0] * radius, SHIFTS[orientation][1] * radius)
     if radius:
         stage = (Turned if m.rotation and m.plane else Beside)(m, radius, side, shift)
@@ -256,7 +258,7 @@ def of_table(side: int, m: State, w: Words) -> None:
     slot = 0
     if "d" in w:
         number = round(w["d"])
-        if abs(w["d"] - number) > EQUAL or number < 0:
+        if abs(w["d"] - number) >= EQUAL or number < 0:
             raise Refusal(F.BAD_VALUE, "d", word="D", value=w["d"], wanted="a tool's number")
         slot = m.slot_of(number)
     tool = m.slots[slot]
@@ -272,8 +274,6 @@ def dynamic(side: int, m: State, w: Words) -> None:
     orientation = whole("l", w.get("l", 0.0))
     if "l" in w and m.plane != 1:
         raise Refusal(F.COMPENSATION_L, "l")
-    if not 0 <= orientation <= ORIENTATIONS:
-        raise Refusal(F.BAD_VALUE, "l", word="L", value=orientation, wanted="an orientation, 0 to 9")
     begin(m, side, m.length(w, "d") / 2.0, orientation)
 
 

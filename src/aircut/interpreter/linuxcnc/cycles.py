@@ -137,7 +137,7 @@ def remember(cycle: Cycle, normal: int, m: State, w: Words) -> Sticky:
     again = before is not None and before.name == cycle.name
     words |= {letter: w[letter] for letter in "rpqijk" if given(w, letter)}
     if axis in w:
-        words[DEPTH] = m.axis(w, normal) / m.unit
+        words[DEPTH] = w[axis] / 2.0 if normal == 0 and m.diameter else w[axis]
     for letter in (axis, "r"):
         if not again and letter not in w:
             raise Refusal(F.MISSING_WORD, code=cycle.name, word=letter.upper(), meaning="")

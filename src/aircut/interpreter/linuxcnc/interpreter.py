@@ -257,6 +257,7 @@ class Interpreter(Blocks):
 
     def step(self) -> None:
         """Run a line. Raises Refusal."""
+        self.state.begin_line()
         text = self.unit
         source = text.source
         if source.classes[self.line] == scan.PLAIN and self.flow.search is None and self.plain(text):

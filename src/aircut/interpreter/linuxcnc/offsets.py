@@ -6,6 +6,7 @@ Sources: 001; the canonical listing, sections 2 and 10.
 from __future__ import annotations
 
 from functools import partial
+from math import inf
 
 from msgspec.structs import replace
 
@@ -16,8 +17,8 @@ from aircut.interpreter.linuxcnc.modes import said
 from aircut.interpreter.linuxcnc.motion import wrong
 from aircut.interpreter.linuxcnc.state import G92, NUMBERED_NINE, ORIGINS, STEP, SYSTEM, State
 from aircut.interpreter.linuxcnc.turning import check_turns
-from aircut.interpreter.state import EQUAL
 from aircut.interpreter.table import Code, Group, Order, Words
+from aircut.language.arithmetic import EQUAL, round_half_away
 
 SYSTEMS = 9
 
@@ -130,30 +131,40 @@ def setting_of(m: State, w: Words) -> Code:
     for letter in row.needs:
         if letter not in w:
             raise Refusal(F.MISSING_WORD, code=row.name, word=letter.upper(), meaning="")
-    for letter in w if int(w["l"]) else ():
-        if letter in "ijkqrp@^" and letter not in row.takes:
-            raise Refusal(F.UNUSED_WORD, letter, word=letter.upper())
+    if int(w["l"]):
+        unused(w, "@^")
     return row
 
 
+def unused(w: Words, letters: str) -> None:
+    """Raises Refusal where one of these words is given."""
+    for letter in letters:
+        if letter in w:
+            raise Refusal(F.UNUSED_WORD, letter, word=letter.upper())
+
+
 def check_settings(m: State, w: Words) -> None:
-    """Raises Refusal."""
-    setting_of(m, w)
+    """G10's L and P, of which all of a block must be right before any of it runs. Raises Refusal."""
+    row = setting_of(m, w)
+    if row.check:
+        row.check(m, w)
 
 
-def system_of(m: State, w: Words) -> int:
-    """The work system of G10's P, from 0. Raises Refusal."""
-    value = w["p"]
-    number = int(value)
-    rest = value - number
-    if EQUAL < rest < 0.5 or not 0 <= value < SYSTEMS + 1:
-        raise Refusal(F.BAD_VALUE, "p", word="P", value=value, wanted="a work system, 0 to 9")
-    return number - 1 if number else m.system
+def check_number(low: float, high: float, wanted: str, m: State, w: Words) -> None:
+    """G10's P: what is above a whole number is a fault, what is below it by less than a half LinuxCNC rounds.
+    Raises Refusal.
+    """
+    value = w.get("p", 0.0)
+    number = round_half_away(value)
+    if value - number > EQUAL or not low <= number <= high:
+        raise Refusal(F.BAD_VALUE, "p", word="P", value=value, wanted=wanted)
 
 
 def set_system(here: bool, m: State, w: Words) -> None:
     """G10 L2: origin and rotation as given; L20: so that the present position reads as given. Raises Refusal."""
-    system = system_of(m, w)
+    unused(w, "ijr" if here else "ij")
+    number = int(w["p"] + EQUAL)
+    system = number - 1 if number else m.system
     if m.cutter and system == m.system:
         raise Refusal(F.UNDER_COMPENSATION, what="G10 on the active system")
     first = ORIGINS + STEP * system
@@ -217,12 +228,9 @@ def set_tool(kind: int, m: State, w: Words) -> None:
     """G10 L1: offsets as given; L10, L11: so that the present position reads as given. Raises Refusal."""
     if not any(letter in w for letter in "xyzabcuvwrijq"):
         raise Refusal(F.MISSING_WORD, code="G10 L1", word="an offset", meaning="")
-    number = round(w["p"])
-    if abs(w["p"] - number) > EQUAL or number < 1:
-        raise Refusal(F.BAD_VALUE, "p", word="P", value=w["p"], wanted="a tool's number")
-    slot = m.slot_of(number)
+    slot = m.slot_of(int(round_half_away(w["p"])))
     tool = m.slots[slot]
-    if given(w, "q") and (abs(w["q"] - round(w["q"])) > EQUAL or not 0 <= round(w["q"]) <= 9):
+    if given(w, "q") and (abs(w["q"] - round(w["q"])) >= EQUAL or not 0 <= round(w["q"]) <= 9):
         raise Refusal(F.BAD_VALUE, "q", word="Q", value=w["q"], wanted="an orientation, 0 to 9")
     changes: dict[str, float] = {}
     if kind == 1:
@@ -271,6 +279,9 @@ def tell_tool(m: State, slot: int) -> None:
 single = partial(Code, group=Group.NON_MODAL, order=Order.NON_MODAL)
 shift = partial(Code, group=Group.SHIFT, order=Order.SHIFT)
 setting = partial(Code, group=Group.NON_MODAL, order=Order.NON_MODAL)
+check_any = partial(check_number, -inf, inf, "a whole number")
+check_system = partial(check_number, 0, SYSTEMS, "a work system, 0 to 9")
+check_tool = partial(check_number, 1, inf, "a tool's number")
 SYSTEM_NAMES = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
 
 CODES = (
@@ -284,10 +295,26 @@ CODES = (
 )
 
 SETTINGS = {
-    0: setting("G10 L0", "Reload the tool table", reload_tools),
-    1: setting("G10 L1", "Set a tool's offsets", partial(set_tool, 1), takes="prijq", needs="p"),
-    2: setting("G10 L2", "Set a work system", partial(set_system, False), takes="pqr", needs="p"),
-    10: setting("G10 L10", "Set a tool by the position", partial(set_tool, 10), takes="prijq", needs="p"),
-    11: setting("G10 L11", "Set a tool by the position in G59.3", partial(set_tool, 11), takes="prijq", needs="p"),
-    20: setting("G10 L20", "Set a work system by the position", partial(set_system, True), takes="pq", needs="p"),
+    0: setting("G10 L0", "Reload the tool table", reload_tools, check=check_any),
+    1: setting("G10 L1", "Set a tool's offsets", partial(set_tool, 1), takes="prijq", needs="p", check=check_tool),
+    2: setting("G10 L2", "Set a work system", partial(set_system, False), takes="pqr", needs="p", check=check_system),
+    10: setting(
+        "G10 L10", "Set a tool by the position", partial(set_tool, 10), takes="prijq", needs="p", check=check_tool
+    ),
+    11: setting(
+        "G10 L11",
+        "Set a tool by the position in G59.3",
+        partial(set_tool, 11),
+        takes="prijq",
+        needs="p",
+        check=check_tool,
+    ),
+    20: setting(
+        "G10 L20",
+        "Set a work system by the position",
+        partial(set_system, True),
+        takes="pq",
+        needs="p",
+        check=check_system,
+    ),
 }

@@ -15,6 +15,7 @@ from aircut.interpreter.table import Code, Group, Order, Words
 
 MOST = 1e9
 NO_VALUE = -1.0  # of M67 and M68 without Q
+WAYS = 4  # to wait for an input, beside 0: not at all
 
 
 def bar(m: State) -> None:
@@ -53,12 +54,12 @@ def wait(m: State, w: Words) -> None:
         letter = "p" if "p" in w else "e"
         raise Refusal(F.BAD_VALUE, letter, word=letter.upper(), value=w[letter], wanted="an input, from 0")
     kind = int(w.get("l", 0.0))
-    if not 0 <= kind <= 4:
-        raise Refusal(F.BAD_VALUE, "l", word="L", value=kind, wanted="0 to 4")
     if kind and w.get("q", 0.0) <= 0.0:
         raise wrong("M66 L1 to L4 needs Q above zero")
     if "e" in w and kind:
         raise wrong("M66 E takes only L0")
+    if kind > WAYS:
+        m.warn(F.LOOSE_VALUE, "l", word="L", value=kind, wanted=f"ways to wait from 0 to {WAYS}")
     if "p" in w:
         m.numbered[INPUT] = float(m.numbered[INPUT] != 0.0)
 

@@ -20,7 +20,7 @@ from aircut.interpreter.linuxcnc.comments import say
 from aircut.interpreter.linuxcnc.files import Line, Text
 from aircut.interpreter.linuxcnc.flow import Flow
 from aircut.interpreter.linuxcnc.shapes import Shape, shape_of
-from aircut.interpreter.linuxcnc.state import FAULTS, NINE, State
+from aircut.interpreter.linuxcnc.state import NINE, State
 from aircut.interpreter.linuxcnc.text import check
 from aircut.interpreter.linuxcnc.tooling import retained
 from aircut.interpreter.midway import Marked
@@ -67,7 +67,6 @@ class Blocks(Marked):
         if shape is None or words is None:
             return False
         text.ran[self.line] = 1
-        self.begin_block()
         if shape.codes or words:
             steps = shape.steps.get(self.modal.name)
             if steps is None:
@@ -76,15 +75,6 @@ class Blocks(Marked):
                 check_values(self.state, steps.codes, words)
             self.perform(steps, words)
         return True
-
-    def begin_block(self) -> None:
-        """What every block begins with."""
-        m = self.state
-        if m.stale:
-            m.stale = False
-            m.position = m.told[:]
-        for number in FAULTS:
-            m.numbered[number] = 0.0
 
     def values(self, block: Block, line: Line) -> tuple[float, ...]:
         """The values of a block. Raises Refusal."""
@@ -96,7 +86,6 @@ class Blocks(Marked):
     def block(self, line: Line) -> None:
         """Run a block of words. Raises Refusal."""
         m = self.state
-        self.begin_block()
         block = line.block
         if block is None:
             block = self.compile(line)

@@ -113,7 +113,7 @@ def check_orient(m: State, w: Words) -> None:
     """Raises Refusal."""
     if "r" in w and not 0.0 <= w["r"] <= 360.0:
         raise Refusal(F.BAD_VALUE, "r", word="R", value=w["r"], wanted="0 to 360 degrees")
-    if "p" in w and w["p"] not in (0.0, 1.0, 2.0):
+    if "p" in w and round(w["p"]) not in (0, 1, 2):
         raise Refusal(F.BAD_VALUE, "p", word="P", value=w["p"], wanted="0, 1 or 2")
 
 

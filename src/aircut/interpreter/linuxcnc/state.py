@@ -14,6 +14,7 @@ from typing import Any
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter import state as house
+from aircut.interpreter.linuxcnc.arithmetic import integer
 from aircut.interpreter.linuxcnc.logs import Logs
 from aircut.interpreter.linuxcnc.spindles import Spindle
 from aircut.interpreter.state import INCH
@@ -70,7 +71,7 @@ class State(house.State):
         #: End of the last printed move. It follows changes of offsets, but neither rotations nor tool lengths:
         #: so LinuxCNC's stand-alone interpreter remembers it.
         self.told = [0.0] * 9
-        self.stale = False  # the position is taken from there before the next block
+        self.stale = False  # the position is taken from there before the next line
         self.slots: list[Tool] = list(machine.slots or (EMPTY, *machine.tools.values()))  # slot 0 is the spindle
         if self.ini.random and self.slots[0] is EMPTY:
             self.slots[0] = UNUSED
@@ -171,6 +172,14 @@ class State(house.State):
         """Positions of the machine's axes: the tool's offset included."""
         return [s + t for s, t in zip(self.to_space(self.position), self.tool_offset, strict=True)]
 
+    def begin_line(self) -> None:
+        """What every line begins with, those of O-words too."""
+        if self.stale:
+            self.stale = False
+            self.position = self.told[:]
+        for number in FAULTS:
+            self.numbered[number] = 0.0
+
     def load_system(self) -> None:
         """Take origin and rotation of the active system from the parameters; the machine stays."""
         first = ORIGINS + STEP * self.system
@@ -223,6 +232,14 @@ class State(house.State):
         return value
 
     # --- parameters
+
+    def number_of(self, index: float | None) -> int:
+        if index is None:
+            raise TypeError("null index")
+        number = integer(index)
+        if number is None or number < 0:
+            raise Refusal(F.BAD_INDEX, value=f"{index:g}", wanted="parameters have whole numbers from 0")
+        return number
 
     def index(self, value: float | None) -> int:
         """A parameter's number. Raises Refusal."""

@@ -5,6 +5,8 @@ Source: the canonical listing, section 13.
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
 from functools import partial
 from math import hypot, radians, tan
 
@@ -12,6 +14,7 @@ from aircut.canon import TOLD
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
 from aircut.interpreter.cutter import SLOT
+from aircut.interpreter.linuxcnc.arranging import given
 from aircut.interpreter.linuxcnc.compensation import threaded
 from aircut.interpreter.linuxcnc.motion import FEED, TRAVERSE, go, goal, steady_speed, wrong
 from aircut.interpreter.linuxcnc.spindles import STANDING, choose
@@ -91,7 +94,7 @@ def thread(m: State, w: Words) -> None:
     pitch = m.length(w, "p")
     peak, first, full = (m.length(w, letter) / half for letter in "ijk")
     degression, springs = max(w.get("r", 1.0), 1.0), int(w.get("h", 0.0))
-    slant = tan(radians(w.get("q", 0.0)))
+    slant = tan(radians(w["q"])) if given(w, "q") else 0.0
     taper = m.length(w, "e")
     ends = int(w.get("l", 0.0)) & (ENTRY | EXIT) if taper > 0.0 else 0
     check_thread(m, w, first, full)
@@ -99,16 +102,22 @@ def thread(m: State, w: Words) -> None:
     finish = goal(m, w)
     end = finish[2]
     pass_ = Pass(m, m.position[:], end, pitch, 1.0 if w["i"] > 0.0 else -1.0, peak, full, taper, ends)
-    depths = []
-    depth, count = peak + first, 1
-    while depth < peak + full:
-        depths.append(depth)
-        count += 1
-        depth = peak + first * count ** (1.0 / degression)
+    depths = [depth * m.unit for depth in depths_of(abs(w["i"]) / half, w["j"] / half, w["k"] / half, degression)]
     depths += [peak + full] * (1 + springs)
     for depth in depths:
         pass_.cut(depth, (depth - peak) * slant, full * slant)
     go(m, TRAVERSE, finish)
+
+
+def depths_of(peak: float, first: float, full: float, degression: float) -> Iterator[float]:
+    """Depths of the passes before the full one, below the drive line, in the program's unit: there a depth may be
+    the full one or less by a rounding error, which is a pass more.
+    """
+    for count in itertools.count(1):
+        depth = peak + first * count ** (1.0 / degression)
+        if depth >= peak + full:
+            return
+        yield depth
 
 
 def check_thread(m: State, w: Words, first: float, full: float) -> None:
