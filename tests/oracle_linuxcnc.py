@@ -21,6 +21,8 @@ COMPENSATED = (
     "M3", "M5", "M9", "G90.1\nG91.1", "G94 F80", "M64 P1", "M65 P1", "M62 P2", "M68 E1 Q3", "(DEBUG,#5420 #<_x> #<_y>)",
     "#1=[#1+1]", "M70", "M72", "M19 R30", "G96 S20 D300", "M66 P0 L0", "(PRINT,#5421)", "G52 X0", "G21", "M7", "G4 P0.5", "M0",
     "M0\nG1 Z2", "M60", "M0\nM0", "M1", "M0\nG0 Z3\nG1 Z1", "G1 Z2\nM0", "M6", "A5", "M0\nA7",
+    "G10 L1 P2 R1", "G10 L10 P2 X1 Y2", "G10 L11 P2 Z3", "G10 L20 P2 X1 Y2", "#1=#<_abs_x> #2=#<_abs_y>",
+    "(DEBUG,#<_abs_x> #<_abs_y> #5420)",
 )  # fmt: skip
 SYSTEMS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
 CODES = [
@@ -328,6 +330,8 @@ class Writer:
     def function(self, depth: int) -> str:
         if self.chance(0.1):
             return f"atan[{self.expression(depth)}]/[{self.expression(depth)}]"
+        if self.chance(0.1):
+            return f"fix[{self.pick('sin cos tan')}[{self.pick('0 30 45 60 90 120 150 180 210 330')}]*{self.pick('2 10 100')}]"
         if self.chance(0.1):
             return f"exists[#{self.pick(('<_x>', '<nn>', '31', '5', '7000'))}]"
         return f"{self.pick(FUNCTIONS)}[{self.expression(depth)}]"

@@ -8,6 +8,7 @@ import math
 from decimal import ROUND_HALF_UP, Decimal
 from typing import NamedTuple
 
+import numpy
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -16,6 +17,7 @@ from aircut.diagnostics import Refusal
 from aircut.interpreter.compiling import FAILURES, compile_value, walk
 from aircut.language.expressions import Parser
 
+PI = numpy.longdouble("3.14159265358979323846264338327950288")  # angles are reckoned in the widest float there is
 LEVELS = ["AND OR XOR & | ^", "EQ NE GT GE LT LE", "+ -", "* / MOD", "**"]
 LEVEL = {name: level for level, names in enumerate(LEVELS) for name in names.split()}
 FUNCTIONS = ["ABS", "ACOS", "ASIN", "COS", "EXP", "FIX", "FUP", "ROUND", "LN", "SIN", "SQRT", "TAN"]
@@ -136,7 +138,7 @@ def value_of(tree, which=0):
         case Function(name, of):
             return function(name, *values_of(of, which=which))
         case Atan(y, x):
-            angle = math.degrees(math.atan2(*values_of(y, x, which=which)))
+            angle = degrees(math.atan2(*values_of(y, x, which=which)))
             return 180.0 if angle <= -180.0 else angle
         case Operation(name, left, right):
             if LEVEL[name] == 1:
@@ -191,6 +193,16 @@ def integer(value):
     return int(whole)
 
 
+def degrees(radians):
+    return float(numpy.longdouble(radians * 180.0) / PI)
+
+
+def turned(of, angle):
+    if math.isinf(angle):
+        raise ValueError
+    return float(of(numpy.longdouble(angle) * PI / 180))
+
+
 def function(name, x):
     low, high = {"LN": (5e-324, math.inf), "SQRT": (0, math.inf)}.get(name, (-math.inf, math.inf))
     if name in ("ASIN", "ACOS"):
@@ -200,11 +212,11 @@ def function(name, x):
     try:
         return {
             "ABS": lambda: abs(x),
-            "ACOS": lambda: math.degrees(math.acos(min(1, max(-1, x)))),
-            "ASIN": lambda: math.degrees(math.asin(min(1, max(-1, x)))),
-            "COS": lambda: math.cos(math.radians(x)),
-            "SIN": lambda: math.sin(math.radians(x)),
-            "TAN": lambda: math.tan(math.radians(x)),
+            "ACOS": lambda: degrees(math.acos(min(1, max(-1, x)))),
+            "ASIN": lambda: degrees(math.asin(min(1, max(-1, x)))),
+            "COS": lambda: turned(numpy.cos, x),
+            "SIN": lambda: turned(numpy.sin, x),
+            "TAN": lambda: turned(numpy.tan, x),
             "EXP": lambda: math.exp(x),
             "LN": lambda: math.log(x),
             "SQRT": lambda: math.sqrt(x),

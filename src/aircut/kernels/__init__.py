@@ -38,3 +38,4 @@ if os.environ.get("AIRCUT_PYTHON_KERNELS"):
     beside = twin("beside", "aircut.kernels.beside")
     printing = twin("printing", "aircut.kernels.printing")
     scurve = twin("scurve", "aircut.kernels.scurve")
+    angles = twin("angles", "aircut.kernels.angles")

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.kernels.angles import cosine, sine, tangent, to_degrees
 
 Value = float | None
 EQUAL = 1e-4  # values nearer than this are equal (000 section 3.1.1)
@@ -178,22 +179,18 @@ def refuse(function: str, value: float) -> Refusal:
 def arc_cosine(value: float) -> float:
     if abs(value) > 1.0 + DOMAIN_SLACK:
         raise refuse("ACOS", value)
-    return math.degrees(math.acos(max(-1.0, min(1.0, value))))
+    return to_degrees(math.acos(max(-1.0, min(1.0, value))))
 
 
 def arc_sine(value: float) -> float:
     if abs(value) > 1.0 + DOMAIN_SLACK:
         raise refuse("ASIN", value)
-    return math.degrees(math.asin(max(-1.0, min(1.0, value))))
+    return to_degrees(math.asin(max(-1.0, min(1.0, value))))
 
 
 def arc_tangent(y: float, x: float) -> float:
-    angle = math.degrees(math.atan2(y, x))
+    angle = to_degrees(math.atan2(y, x))
     return 180.0 if angle == -180.0 else angle
-
-
-def cosine(value: float) -> float:
-    return math.cos(math.radians(value))
 
 
 def exponential(value: float) -> float:
@@ -216,18 +213,10 @@ def logarithm(value: float) -> float:
     return math.log(value)
 
 
-def sine(value: float) -> float:
-    return math.sin(math.radians(value))
-
-
 def square_root(value: float) -> float:
     if value < 0.0:
         raise refuse("SQRT", value)
     return math.sqrt(value)
-
-
-def tangent(value: float) -> float:
-    return math.tan(math.radians(value))
 
 
 class Function(NamedTuple):

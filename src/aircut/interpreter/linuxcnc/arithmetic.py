@@ -9,6 +9,7 @@ from typing import Any
 
 from aircut.diagnostics import Refusal
 from aircut.diagnostics import faults as F
+from aircut.kernels import angles
 from aircut.language.arithmetic import EQUAL, round_half_away
 from aircut.language.arithmetic import FUNCTIONS as HOUSE_FUNCTIONS
 from aircut.language.arithmetic import OPERATORS as HOUSE_OPERATORS
@@ -31,17 +32,17 @@ def integer(value: float) -> int | None:
 def arc_cosine(value: float) -> float:
     if not abs(value) <= 1.0:
         raise Refusal(F.DOMAIN, function="ACOS", value=value)
-    return math.degrees(math.acos(value))
+    return angles.to_degrees(math.acos(value))
 
 
 def arc_sine(value: float) -> float:
     if not abs(value) <= 1.0:
         raise Refusal(F.DOMAIN, function="ASIN", value=value)
-    return math.degrees(math.asin(value))
+    return angles.to_degrees(math.asin(value))
 
 
 def arc_tangent(y: float, x: float) -> float:
-    return math.degrees(math.atan2(y, x))
+    return angles.to_degrees(math.atan2(y, x))
 
 
 class Unreadable(float):

@@ -28,7 +28,9 @@ from aircut.language.arithmetic import EQUAL
 
 BACK = 0.05  # radians from a half turn
 #: Events that do not wait behind a move held back.
-AT_ONCE = frozenset(("MESSAGE", "LOG", "PRINT", "SELECT_TOOL", "SELECT_PLANE", "USE_LENGTH_UNITS"))
+AT_ONCE = frozenset(
+    ["MESSAGE", "LOG", "PRINT", "SELECT_TOOL", "SELECT_PLANE", "USE_LENGTH_UNITS", "STORE_TOOL", "CHANGE_TOOL_NUMBER"]
+)
 
 
 class Beside(Nist):

@@ -200,7 +200,9 @@ def feed_flags(m: State) -> int:
 
 
 def straight(kind: int, m: State, w: Words) -> None:
-    """G0 and G1."""
+    """G0 and G1. Raises Refusal."""
+    if m.cutter and m.plane_code % 10:
+        raise wrong("compensation goes on in planes of X, Y and Z only")
     if kind == FEED:
         check_feed(m, w)
     place = goal(m, w, kind == TRAVERSE)

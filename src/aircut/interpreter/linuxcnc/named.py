@@ -30,7 +30,7 @@ def code(name: str) -> float:
 
 
 def machine(i: int, m: State) -> float:
-    place = m.machine_position()[i]
+    place = m.to_space(m.guided())[i] + m.tool_offset[i]
     return place / m.unit if i in LINEAR else place
 
 

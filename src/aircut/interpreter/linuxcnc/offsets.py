@@ -202,7 +202,7 @@ def stored_shift(m: State) -> list[float]:
 
 def store_here(m: State, w: Words, first: int, rotation: float) -> None:
     """Origins from which the present position reads as given; X and Y are solved in the rotated frame."""
-    space = m.to_space(m.position)
+    space = m.to_space(m.guided())
     origin = m.stored(first)
     shift = stored_shift(m)
     reads = [p - o for p, o in zip(space, origin, strict=True)]
@@ -261,7 +261,7 @@ def tool_of_reading(kind: int, m: State, w: Words, named: list[int], offsets: li
     place, used, kept = (
         [*m.turned(values[0], values[1], -angle), *values[2:]]
         for values in (
-            [s - o for s, o in zip(m.to_space(m.position), m.stored(first), strict=True)],
+            [s - o for s, o in zip(m.to_space(m.guided()), m.stored(first), strict=True)],
             m.tool_offset,
             offsets,
         )

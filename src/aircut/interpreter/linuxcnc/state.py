@@ -260,13 +260,17 @@ class State(house.State):
         """The present position on an axis, program units."""
         return self.position[i] / self.unit if i in LINEAR else self.position[i]
 
-    def beside(self, i: int) -> float:
-        """As `shown`; under cutter compensation where the tool is led to, as far as that is known."""
+    def guided(self) -> list[float]:
+        """The position; under cutter compensation where the tool is led to, as far as that is known."""
         stage: Any = self.stages.get("compensation")
-        led = stage.led(self) if hasattr(stage, "led") else None  # behind G40 there is another stage
-        if led is None:
-            return self.shown(i)
-        place: float = led[i]
+        led: list[float] | None = (
+            stage.led(self) if hasattr(stage, "led") else None
+        )  # behind G40 there is another stage
+        return self.position if led is None else led
+
+    def beside(self, i: int) -> float:
+        """That position on an axis, program units."""
+        place = self.guided()[i]
         return place / self.unit if i in LINEAR else place
 
     def has_number(self, index: float) -> bool:

@@ -87,9 +87,9 @@ def rigid_tap(m: State, w: Words) -> None:
 
 def thread(m: State, w: Words) -> None:
     """G76: passes along Z, each deeper than the one before. Raises Refusal."""
-    follows(m, w, "G76")
     if m.cutter:
         raise Refusal(F.UNDER_COMPENSATION, what="G76")
+    follows(m, w, "G76")
     half = 2.0 if m.diameter else 1.0
     pitch = m.length(w, "p")
     peak, first, full = (m.length(w, letter) / half for letter in "ijk")
