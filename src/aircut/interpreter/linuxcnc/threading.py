@@ -33,7 +33,7 @@ def follows(m: State, w: Words, what: str) -> None:
 
 
 def beside(m: State, w: Words) -> bool:
-    """Beside a contour G33 and G33.1 are straight moves like others: no spindle is asked for. Raises Refusal."""
+    """Beside a contour G33, G33.1 and G76 are straight moves like others: no spindle is asked for. Raises Refusal."""
     stage = m.stages.get(SLOT)
     if stage is None or not m.cutter:  # behind G40 there still is one, for the first move
         return False
@@ -87,8 +87,8 @@ def rigid_tap(m: State, w: Words) -> None:
 
 def thread(m: State, w: Words) -> None:
     """G76: passes along Z, each deeper than the one before. Raises Refusal."""
-    if m.cutter:
-        raise Refusal(F.UNDER_COMPENSATION, what="G76")
+    if beside(m, w):
+        return
     follows(m, w, "G76")
     half = 2.0 if m.diameter else 1.0
     pitch = m.length(w, "p")
