@@ -47,7 +47,7 @@ class Flow(Marked):
         self.modes: Any = ASKED  # what compiled loops and subroutines hand on, see looms.modes
         self.repeated = 0
         self.passes = 0
-        self.watched: tuple[int, tuple[Any, ...]] | None = None  # a jump back, and the state then
+        self.watched: tuple[int, dict[str, Any]] | None = None  # a jump back, and the state then
         self.until = 0  # so many passes are compared with it
 
     # --- diagnostics
@@ -175,7 +175,7 @@ class Flow(Marked):
             self.watched = (line, self.state.snapshot())
             self.until = self.passes + WATCH
         elif self.watched and self.watched[0] == line and self.passes <= self.until:
-            if self.watched[1] == self.state.snapshot():
+            if self.state.matches(self.watched[1]):
                 raise Refusal(F.ENDLESS_LOOP, first=target + 1, last=line + 1)
         return target
 

@@ -273,10 +273,18 @@ class State:
 
     # --- comparing states
 
-    def snapshot(self) -> tuple[Any, ...]:
-        """All that can decide what happens next: equal snapshots at one place mean an endless loop."""
+    def snapshot(self) -> dict[str, Any]:
+        """All that can decide what happens next; first the variables, which differ most often."""
         skip = ("out", "dialect", "machine", "warn", "line")
-        return tuple(frozen(value) for name, value in self.__dict__.items() if name not in skip)
+        found = {name: frozen(value) for name, value in self.__dict__.items() if name not in skip}
+        return dict(sorted(found.items(), key=lambda item: not isinstance(item[1], dict)))
+
+    def matches(self, snapshot: dict[str, Any]) -> bool:
+        """Whether all is as it was then: at the same place that means an endless loop."""
+        now = self.__dict__
+        return all(
+            (frozen(now[name]) if isinstance(value, tuple) else now[name]) == value for name, value in snapshot.items()
+        )
 
 
 def frozen(value: Any) -> Any:
