@@ -769,6 +769,24 @@ class Writer:
         return f"{first}{start}\n{body}\n{end}\n{behind}"
 
 
+CHARACTERS = "0123456789.+-*/[]#<>()=;%@^$ \tGMXYZABCIJKPQRFSTHLDEONuvwgm_!?,:"
+
+
+def mistyped(seed: int) -> str:
+    """A random program in which a few characters are lost, added, changed or doubled."""
+    choose = random.Random(seed)
+    lines = Writer(seed).program(8).splitlines()
+    for _ in range(choose.choice((1, 1, 1, 2, 3))):
+        at = choose.randrange(len(lines))
+        line = lines[at]
+        place, other = choose.randrange(len(line) + 1), choose.randrange(len(line) + 1)
+        before, behind, new = line[:place], line[place:], choose.choice(CHARACTERS)
+        doubled = line[min(place, other) : max(place, other)]
+        lines[at] = choose.choice((before + behind[1:], before + new + behind, before + new + behind[1:],
+                                   before + doubled + behind, before))  # fmt: skip
+    return "\n".join(lines) + "\n"
+
+
 def probe_line(seed: int) -> str:
     """A short program around one line that may well be wrong."""
     writer = Writer(seed)

@@ -19,6 +19,8 @@ PROGRAMS = 300  # in one test run; scripts/fuzz runs as many as wanted
 def program(seed: int, only: str = "") -> str:
     if seed % 3 == 0:
         return oracle_linuxcnc.probe_line(seed)
+    if seed % 6 == 1 and not only:
+        return oracle_linuxcnc.mistyped(seed)
     return oracle_linuxcnc.Writer(seed, only).program(25)
 
 

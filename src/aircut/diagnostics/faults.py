@@ -244,6 +244,12 @@ TAPPED_ASIDE = Fault(
     "tap in G17, or with G33.1",
     Severity.WARNING,
 )
+UNCLOSED_NAME = Fault(
+    "unclosed-name",
+    "the label's name has no >: LinuxCNC passes the line over",
+    "close the name: O<name>",
+    Severity.WARNING,
+)
 LOOSE_VALUE = Fault("loose-value", "LinuxCNC takes {word}{value:g}, though it knows {wanted}", "", Severity.WARNING)
 CYCLE_ROTARY = Fault("cycle-rotary", "{axis} moves in {code}", "turn rotary axes in a block before")
 CYCLE_BELOW = Fault("cycle-below", "{code}: R (at {r:g}) lies below the bottom of the hole ({axis}{bottom:g})")

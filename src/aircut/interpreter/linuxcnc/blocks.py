@@ -180,7 +180,7 @@ class OLine(NamedTuple):
     """An O-word: its label and keyword, and what follows, not yet read."""
 
     label: str | Callable[..., tuple[float, ...]]  # a name, or a function of the number
-    keyword: str  # "" for a bare number, "?" for what is none
+    keyword: str  # "" for a bare number, "?" for what is none, "<" behind a name that is not closed
     code: str  # of the line, without the comments at its end
     end: int  # of the keyword in it
 
@@ -209,6 +209,8 @@ def parse_o(code: str) -> OLine | None:
     parser.at = start.end()
     label: str | Callable[..., tuple[float, ...]]
     if parser.take("<"):
+        if ">" not in code[parser.at :]:
+            return OLine("", "<", code, len(code))
         label = parser.name()
     else:
         node = parser.value()

@@ -142,6 +142,8 @@ class Flow:
         """An O-word among lines that are passed over."""
         search = self.search
         assert search is not None
+        if line.keyword == "<":
+            return
         if line.keyword == "?" and search.kinds != ("endsub",):
             self.unknown(line, name)
         if search.call:
@@ -208,14 +210,15 @@ class Flow:
         """Its condition is computed even where a branch above has run."""
         label = self.scoped(name)
         mark = self.opened(label, ("if",), line)
-        (truth,) = self.values(line, 1, 1)
+        (truth,) = self.values(to_value(line) if sought else line, 1, 1)
         if not sought or mark.taken or truth == 0.0:
             self.skip(label, *BRANCHES)
             return
         mark.taken = True
 
     def else_(self, line: OLine, name: str, sought: bool = False) -> None:
-        self.nothing(line)
+        if not sought:
+            self.nothing(line)
         label = self.scoped(name)
         mark = self.opened(label, ("if",), line)
         if not sought or mark.taken:
@@ -239,7 +242,7 @@ class Flow:
 
     def while_(self, line: OLine, name: str, sought: bool = False) -> None:
         label = self.scoped(name)
-        (truth,) = self.values(line, 1, 1)
+        (truth,) = self.values(to_value(line) if sought else line, 1, 1)
         known = self.marks.get(label)
         if known is not None and known.kind == "do":
             if self.breaking:
@@ -453,8 +456,12 @@ class Flow:
         found = f"“{line.rest[:12]}”"
         raise Refusal(F.EXPECTED, where=where, wanted="an O-word such as CALL or IF", found=found, hint="")
 
+    def unclosed(self, line: OLine, name: str, sought: bool = False) -> None:
+        """LinuxCNC takes no notice of the line."""
+        self.run.warn(F.UNCLOSED_NAME)
+
     WORDS: dict[str, Callable[..., None]] = {
-        "": bare, "?": unknown, "sub": sub_, "endsub": endsub, "call": call_, "return": return_,
+        "": bare, "?": unknown, "<": unclosed, "sub": sub_, "endsub": endsub, "call": call_, "return": return_,
         "if": if_, "elseif": elseif, "else": else_, "endif": endif,
         "while": while_, "endwhile": endwhile, "do": do,
         "repeat": repeat, "endrepeat": endrepeat, "break": break_, "continue": continue_,

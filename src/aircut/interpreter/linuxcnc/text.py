@@ -15,6 +15,7 @@ from aircut.language.text import COMMENT, STRAY, illegal_character, stray_fault
 LONGEST = 253  # bytes with the line end, whatever that is
 BLANKS = " \t\r\n"
 TRAILING = BLANKS + "\v\f"
+NAME = re.compile("#<[^>]*>")
 SMALL = {ord(c): None for c in BLANKS} | {c: c + 32 for c in range(ord("A"), ord("Z") + 1)} | {ord(COMMENT): STRAY}
 PIECES = re.compile(r"\(([^()]*)\)|(;.*)|([^();]+)|(.)", re.DOTALL)
 PYTHON = re.compile(r";[ \t]*py(run|reload)?,", re.IGNORECASE)  # the only one behind a semicolon that means something
@@ -75,9 +76,10 @@ def columns(text: str) -> list[int]:
 
 
 def check(code: str) -> None:
-    """Refuse characters that no line holds outside comments. Raises Refusal."""
+    """Refuse characters that no line holds outside comments, or names of parameters. Raises Refusal."""
     if ")" in code:
-        at = code.index(")")
-        raise Refusal(F.STRAY_PARENTHESIS, where=(at, at + 1))
+        at = NAME.sub(lambda name: "_" * len(name[0]), code).find(")")
+        if at >= 0:
+            raise Refusal(F.STRAY_PARENTHESIS, where=(at, at + 1))
     if strange := STRANGE.search(code):
         raise illegal_character(strange[0], strange.span())
