@@ -14,6 +14,7 @@ from aircut.interpreter.linuxcnc.state import DEBUGGING, LAST, POSITION, State
 ACTIVE = re.compile(r"[ \t]*(msg|debug|print|logopen|logappend|logclose|log|abort)(,|$)", re.IGNORECASE)
 PYTHON = re.compile(r"[ \t]*(py,|py$|pyrun,|pyreload(,|$))", re.IGNORECASE)
 PIECES = re.compile(r"#(\d+)|#<([^>]*)>|%(d)|%(f)|%\.(\d)f|%\.|(.)", re.DOTALL)
+UNCLOSED = re.compile(r"#<[^>]*\Z")
 UNKNOWN = "######"
 LONGEST = 30  # characters of a number
 NEAR_ZERO = 1e-4
@@ -57,10 +58,12 @@ def say(m: State, comment: str) -> None:
 
 
 def expanded(m: State, text: str) -> str:
-    """The text with its parameters' values; %d, %f and %.nf set the decimals of those that follow."""
+    """The text with its parameters' values, up to a name that is not closed; %d, %f and %.nf set the decimals of
+    those that follow.
+    """
     decimals = 6
     parts: list[str] = []
-    for number, name, whole, four, digits, other in PIECES.findall(text):
+    for number, name, whole, four, digits, other in PIECES.findall(UNCLOSED.sub("", text)):
         if whole:
             decimals = 0
         elif four:

@@ -142,8 +142,6 @@ class Flow:
         """An O-word among lines that are passed over."""
         search = self.search
         assert search is not None
-        if line.keyword == "<":
-            return
         if line.keyword == "?" and search.kinds != ("endsub",):
             self.unknown(line, name)
         if search.call:
@@ -152,7 +150,7 @@ class Flow:
             elif name == search.label and line.keyword in ("endsub", "return"):
                 self.give_back(to_value(line))
             return
-        if line.keyword in ("", "sub") and search.kinds == ("endsub",):
+        if line.keyword in ("", "sub", "<") and search.kinds == ("endsub",):
             raise refuse("a subroutine inside a subroutine")
         if line.keyword == "return" and name == search.label and search.kinds == ("endsub",):
             self.give_back(to_value(line))

@@ -305,6 +305,8 @@ class Interpreter(Blocks):
         names, words = gather(block.letters, values, self.dialect)
         if "p" not in words:
             raise Refusal(F.MISSING_WORD, code="M98", word="P", meaning="the number of the subroutine")
+        if names.count("m98") > 1:
+            raise Refusal(F.UNKNOWN_CODE, "m", code="M98")
         if not passed:
             arrange(names, words, self.modal, self.dialect)
             self.flow.m98(str(whole("p", words["p"])), int(words.get("l", 1.0)))
