@@ -232,7 +232,7 @@ def ask(text: str, folder: Path) -> Answer:
     file = folder / "program.ngc"
     file.write_text(text)
     assert oracle.PROGRAM
-    done = subprocess.run([oracle.PROGRAM, "-g", str(file)], capture_output=True, text=True, timeout=60, cwd=folder,
+    done = subprocess.run([oracle.PROGRAM, "-g", str(file)], capture_output=True, text=True, timeout=10, cwd=folder,
                           env={"HOME": str(folder)})  # fmt: skip
     told = [line for line in done.stderr.splitlines()[1:] if done.returncode and not line.startswith(DETAIL)] + ["", ""]
     return Answer(done.stdout.splitlines(), done.returncode == 0, told[0], told[1].strip())

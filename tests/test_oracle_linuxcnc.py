@@ -2,6 +2,7 @@
 
 from math import inf
 from pathlib import Path
+from subprocess import TimeoutExpired
 
 import msgspec
 import pytest
@@ -17,10 +18,10 @@ PROGRAMS = 300  # in one test run; scripts/fuzz runs as many as wanted
 
 
 def program(seed: int, only: str = "") -> str:
+    if only == "mistyped":
+        return oracle_linuxcnc.mistyped(seed)
     if seed % 3 == 0:
         return oracle_linuxcnc.probe_line(seed)
-    if seed % 6 == 1 and not only:
-        return oracle_linuxcnc.mistyped(seed)
     return oracle_linuxcnc.Writer(seed, only).program(25)
 
 
@@ -33,7 +34,11 @@ def machine() -> Machine:
 
 def difference(text: str, folder: Path) -> str:
     """The first difference for a program, in words; empty when there is none."""
-    theirs = oracle_linuxcnc.ask(text, folder)
+    try:
+        theirs = oracle_linuxcnc.ask(text, folder)
+    except TimeoutExpired:  # a loop without end, or text that it cannot read
+        MET["hang"] += 1
+        return ""
     result = aircut.loads(text, "linuxcnc").run(machine())
     ours = [line.rstrip("\n") for line in result.canon()]
     found = oracle.differ(ours, theirs.listing)
@@ -60,7 +65,7 @@ def compare(seed: int, folder: Path, only: str = "") -> str:
 
 
 @pytest.mark.skipif(oracle.PROGRAM is None, reason="rs274 (Debian package linuxcnc-uspace) is not installed")
-@pytest.mark.parametrize("only", ["", "compensation"])
+@pytest.mark.parametrize("only", ["", "compensation", "mistyped"])
 def test_listing_equals_the_oracle(only: str, tmp_path: Path) -> None:
     differences = [text for seed in range(PROGRAMS) if (text := compare(seed, tmp_path, only))]
     assert not differences, f"{len(differences)} of {PROGRAMS}\n" + "\n".join(differences[:5])
